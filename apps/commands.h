@@ -12,6 +12,10 @@ namespace elastimate {
 
 int RunEstimate(const std::vector<std::string>& arguments);
 int RunValidate(const std::vector<std::string>& arguments);
+/// Does what RunEstimate does, with a page for --out; `command` is the line
+/// that asks for it.
+int RunReport(const std::vector<std::string>& arguments,
+              const std::string& command);
 int RunSimulate(const std::vector<std::string>& arguments);
 int RunPlan(const std::vector<std::string>& arguments);
 int RunScene(const std::vector<std::string>& arguments);

@@ -1,5 +1,8 @@
 #include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -26,6 +29,7 @@
 #include "elastimate/estimators/material_fit/merge.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/estimators/series/joint_estimate.h"
+#include "elastimate/io/report/html_report.h"
 #include "elastimate/io/report/report.h"
 #include "elastimate/io/report/series_table.h"
 #include "elastimate/io/report/summary.h"
@@ -38,6 +42,15 @@ namespace elastimate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// The page that a report is, in place of the fields of an estimate.
+struct Page {
+  std::string without_data;  // That of ReadPage.
+  std::string command;
+};
+
+// Makes the page of a report.
+using PageOf = std::function<std::string(const std::string& report)>;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -75,7 +88,8 @@ Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
 
 // Returns the options of the flags, all of which are checked before anything is
 // read.
-EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
+EstimatorOptions CheckFlags(const std::vector<std::string>& arguments,
+                            OutFormats formats) {
   EstimatorOptions options = OptionsFromFlags();
   OriginFromFlag();
   if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
@@ -90,16 +104,21 @@ EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
         "--regions=merge");
   }
   ApplyComputingFlags();
-  CheckOutputFlags(arguments);
+  CheckOutputFlags(arguments, formats);
   return options;
 }
 
-// Writes the report to where the flags say, together with the other files.
+// Writes the report to where the flags say, together with the other files and,
+// where there is one, the page that it is a part of.
 void WriteReport(const Estimate& estimate, const Scene& scene,
                  const EstimatorOptions& options, const ReportTimes& times,
-                 const std::vector<std::string>& notices, StagedFiles& files) {
+                 const std::vector<std::string>& notices, const PageOf& page,
+                 StagedFiles& files) {
   const std::string report =
       JsonReport(estimate, scene, options, times, notices);
+  if (page) {
+    files.Add(FLAGS_out, page(report));
+  }
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
     files.Add(FLAGS_json, report);
   }
@@ -111,16 +130,16 @@ void WriteReport(const Estimate& estimate, const Scene& scene,
 
 // Throws for flags that do not go with a series, and for places where its table
 // may not go.
-void CheckSeries(const FrameSeries& series) {
+void CheckSeries(const FrameSeries& series, bool has_page) {
   for (const std::string flag : {"out", "order"}) {
-    if (IsGiven(flag) && (flag != "order" || FLAGS_order != 1)) {
+    if (IsGiven(flag) && (flag == "order" ? FLAGS_order != 1 : !has_page)) {
       throw std::invalid_argument(AsGiven(flag) +
                                   " cannot be used with a scene of several "
                                   "frames; leave it out, or make "
                                   "a scene of one frame");
     }
   }
-  for (const std::string* output : {&FLAGS_series, &FLAGS_json}) {
+  for (const std::string* output : {&FLAGS_series, &FLAGS_json, &FLAGS_out}) {
     for (const std::filesystem::path& file : series.files) {
       if (!output->empty() && AreSameFile(*output, file)) {
         throw std::invalid_argument(PrintablePath(*output) +
@@ -131,12 +150,27 @@ void CheckSeries(const FrameSeries& series) {
   }
 }
 
+// Returns the usable frame of the largest load; empty where none is usable.
+std::optional<std::size_t> FrameOfLargestLoad(
+    const std::vector<FrameEstimate>& frames) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].estimate.IsUsable() &&
+        (!found || std::abs(frames[i].load) > std::abs(frames[*found].load))) {
+      found = i;
+    }
+  }
+  return found;
+}
+
 // Estimates from the frames of a scene, and from all of them together.
-int RunSeries(const Estimator& estimator, SceneReading reading,
+int RunSeries(const std::vector<std::string>& arguments,
+              const Estimator& estimator, SceneReading reading,
               const EstimatorOptions& options, double read_seconds,
-              Clock::time_point start, std::optional<Progress>& progress) {
+              Clock::time_point start, const Page* page,
+              std::optional<Progress>& progress) {
   const FrameSeries& series = *reading.frames;
-  CheckSeries(series);
+  CheckSeries(series, page != nullptr);
   const std::vector<FrameEstimate> frames = EstimateFrames(
       estimator, reading.scene, series, options,
       [&progress](const std::string& what) { progress->Show(what); });
@@ -144,11 +178,31 @@ int RunSeries(const Estimator& estimator, SceneReading reading,
                                        frames, series.load_error);
   progress.reset();
   StagedFiles files;
+  const std::string table = SeriesTable(series, frames, joint);
   if (!FLAGS_series.empty()) {
-    files.Add(FLAGS_series, SeriesTable(series, frames, joint));
+    files.Add(FLAGS_series, table);
   }
+  const auto page_of = [&](const std::string& report) {
+    const std::optional<std::size_t> shown = FrameOfLargestLoad(frames);
+    if (!shown) {
+      return HtmlReport(page->without_data, reading.scene, joint, {},
+                        {Sources(arguments), page->command, report, table});
+    }
+    const Estimate& estimate = frames[*shown].estimate;
+    Scene scene = reading.scene;
+    scene.load_cases = {series.read(*shown)};
+    const std::optional<Scene> fitted = FittedScene(scene, estimate);
+    if (!estimate.large_strain_law.empty()) {
+      scene.materials = fitted->materials;
+    }
+    return HtmlReport(
+        page->without_data, scene, estimate,
+        ResultsOf(scene, fitted ? *fitted : scene, estimate, options.solver),
+        {Sources(arguments), page->command, report, table, *shown + 1});
+  };
   WriteReport(joint, reading.scene, options,
-              {read_seconds, SecondsSince(start)}, reading.notices, files);
+              {read_seconds, SecondsSince(start)}, reading.notices,
+              page == nullptr ? nullptr : PageOf(page_of), files);
   return joint.IsUsable() ? 0 : 1;
 }
 
@@ -204,7 +258,8 @@ MaterialMerge MergeRegions(const Estimator& estimator,
 int RunOne(const std::vector<std::string>& arguments,
            const Estimator& estimator, SceneReading reading,
            EstimatorOptions options, double read_seconds,
-           Clock::time_point start, std::optional<Progress>& progress) {
+           Clock::time_point start, const Page* page,
+           std::optional<Progress>& progress) {
   Scene& scene = reading.scene;
   std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(Sources(arguments), scene, reading.notices);
@@ -243,34 +298,42 @@ int RunOne(const std::vector<std::string>& arguments,
     scene.materials = reported.materials;
   }
   StagedFiles files;
+  SceneResults results;
   if (!FLAGS_out.empty()) {
     progress->Show("writing " + PrintablePath(FLAGS_out));
-    files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
-                                    ResultFields(scene, reported, estimate,
-                                                 options.solver),
+    results = ResultsOf(scene, reported, estimate, options.solver);
+  }
+  if (!FLAGS_out.empty() && page == nullptr) {
+    files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh, results.fields,
                                     reading.file_order));
   }
+  const auto page_of = [&](const std::string& report) {
+    return HtmlReport(page->without_data, scene, estimate, results,
+                      {Sources(arguments), page->command, report, ""});
+  };
   progress.reset();
   for (const std::string& sentence :
        OutlierLines(estimate.outliers, reading.measured_lines)) {
     reading.notices.push_back(sentence);
   }
   WriteReport(estimate, reported, options, {read_seconds, SecondsSince(start)},
-              reading.notices, files);
+              reading.notices, page == nullptr ? nullptr : PageOf(page_of),
+              files);
   return estimate.IsUsable() ? 0 : 1;
 }
 
-}  // namespace
-
-int RunEstimate(const std::vector<std::string>& arguments) {
+// Estimates from a scene, and writes a page where there is one to fill.
+int Run(const std::vector<std::string>& arguments, const Page* page) {
   const Clock::time_point start = Clock::now();
   if (arguments.empty()) {
     throw std::invalid_argument(
-        "estimate needs a scene file; name a .json, .vtu, .vtk or .msh file");
+        std::string(page == nullptr ? "estimate" : "report") +
+        " needs a scene file; name a .json, .vtu, .vtk or .msh file");
   }
   const std::shared_ptr<const Estimator> estimator =
       MakeEstimator(Printable(FLAGS_estimator));
-  EstimatorOptions options = CheckFlags(arguments);
+  EstimatorOptions options = CheckFlags(
+      arguments, page == nullptr ? OutFormats::kVtu : OutFormats::kPage);
 
   std::optional<Progress> progress("reading " + Sources(arguments));
   SceneReading reading = ReadMeasuredScene(arguments);
@@ -286,8 +349,8 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   const double read_seconds = SecondsSince(start);
   if (reading.frames) {
-    return RunSeries(*estimator, std::move(reading), options, read_seconds,
-                     start, progress);
+    return RunSeries(arguments, *estimator, std::move(reading), options,
+                     read_seconds, start, page, progress);
   }
   if (!FLAGS_series.empty()) {
     throw std::invalid_argument(
@@ -297,7 +360,22 @@ int RunEstimate(const std::vector<std::string>& arguments) {
         "out");
   }
   return RunOne(arguments, *estimator, std::move(reading), options,
-                read_seconds, start, progress);
+                read_seconds, start, page, progress);
+}
+
+}  // namespace
+
+int RunEstimate(const std::vector<std::string>& arguments) {
+  return Run(arguments, nullptr);
+}
+
+int RunReport(const std::vector<std::string>& arguments,
+              const std::string& command) {
+  if (FLAGS_out.empty()) {
+    throw std::invalid_argument("report needs --out=FILE.html");
+  }
+  const Page page = {ReadPage(), command};
+  return Run(arguments, &page);
 }
 
 void ApplyComputingFlags() {

@@ -172,6 +172,20 @@ Command TheValidateCommand() {
             {{"json"}, {"out", "VTU file with the errors of prediction"}}}}};
 }
 
+// The command takes the flags of `estimate`.
+Command TheReportCommand() {
+  Command command = TheEstimateCommand();
+  command.name = "report";
+  command.summary =
+      "estimates, and writes a page for people that shows all of it";
+  for (CommandFlag& flag : command.groups.back().flags) {
+    if (flag.name == "out") {
+      flag.meaning = "HTML file of the page, which a browser opens";
+    }
+  }
+  return command;
+}
+
 Command TheSimulateCommand() {
   return {"simulate",
           "SCENE",
@@ -271,6 +285,7 @@ const Program& Elastimate() {
       "elastimate",
       {TheEstimateCommand(),
        TheValidateCommand(),
+       TheReportCommand(),
        TheSimulateCommand(),
        ThePlanCommand(),
        TheSceneCommand(),

@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -59,6 +61,30 @@ void WatchForLackOfMemory() {
   });
 }
 
+// Quotes an argument as a shell needs it.
+std::string ForShell(const std::string& argument) {
+  const bool is_plain =
+      std::all_of(argument.begin(), argument.end(), [](char character) {
+        return std::isalnum(static_cast<unsigned char>(character)) != 0 ||
+               std::string("-_=+./,:@%").find(character) != std::string::npos;
+      });
+  std::string quoted;
+  for (const char character : argument) {
+    quoted += character == '\'' ? "'\\''" : std::string(1, character);
+  }
+  return is_plain ? argument : "'" + quoted + "'";
+}
+
+// Returns the line by which a shell runs a command.
+std::string CommandLine(const std::string& name,
+                        const std::vector<std::string>& arguments) {
+  std::string line = "elastimate " + name;
+  for (const std::string& argument : arguments) {
+    line += " " + ForShell(Printable(argument, kLongestPath));
+  }
+  return line;
+}
+
 int RunCommand(const std::string& name,
                const std::vector<std::string>& arguments) {
   const Command& command = FindCommand(Elastimate(), name);
@@ -70,6 +96,9 @@ int RunCommand(const std::string& name,
   }
   if (name == "validate") {
     return RunValidate(others);
+  }
+  if (name == "report") {
+    return RunReport(others, CommandLine(name, arguments));
   }
   if (name == "simulate") {
     return RunSimulate(others);

@@ -101,6 +101,8 @@ std::string EndsOfNames(OutFormats formats) {
       return ".csv, as a table is written";
     case OutFormats::kJson:
       return ".json, as a scene is written";
+    case OutFormats::kPage:
+      return ".html, as a page is written";
   }
   return ".vtu, as a VTU file is written";
 }
@@ -132,7 +134,8 @@ void CheckOutputFlags(const std::vector<std::string>& inputs,
     const bool is_right =
         (takes_vtu && HasExtension(FLAGS_out, ".vtu")) ||
         (takes_table && HasExtension(FLAGS_out, ".csv")) ||
-        (formats == OutFormats::kJson && HasExtension(FLAGS_out, ".json"));
+        (formats == OutFormats::kJson && HasExtension(FLAGS_out, ".json")) ||
+        (formats == OutFormats::kPage && HasExtension(FLAGS_out, ".html"));
     if (!is_right) {
       throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
                                   "; the name must end in " +

@@ -12,7 +12,7 @@ namespace elastimate {
 void OpenClosedStandardStreams();
 
 /// The formats that --out may have.
-enum class OutFormats { kVtu, kVtuOrTable, kTable, kJson };
+enum class OutFormats { kVtu, kVtuOrTable, kTable, kJson, kPage };
 
 /// Tells whether the name of a file ends with `extension`, in letters of any
 /// case.

@@ -9,6 +9,7 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/large_strain_equilibrium.h"
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -22,8 +23,9 @@
 namespace elastimate {
 namespace {
 
-// Returns p of the estimate; empty where some parameters are not physical.
-std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
+// Returns p of the fit, without the correction for what its elements miss;
+// empty where some parameters are not physical.
+std::optional<Eigen::VectorXd> FittedParameters(const Estimate& estimate) {
   Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
@@ -31,6 +33,11 @@ std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
     if (!parameter.IsPhysical() || !std::isfinite(parameter.value)) {
       return std::nullopt;
     }
+  }
+  if (values.size() == 2 && estimate.discretization_correction) {
+    const Eigen::Vector2d& correction = *estimate.discretization_correction;
+    values(0) *= std::exp(-correction(0));
+    values(1) -= correction(1);
   }
   return values.size() == 0 ? std::nullopt
                             : std::optional<Eigen::VectorXd>(values);
@@ -172,12 +179,34 @@ Eigen::MatrixXd MeasuredMinus(Scene scene,
   return difference;
 }
 
-// Returns the scene with supports where a fit of unknown motion found them.
+// Does what MeasuredMinus does at the points of each load case: dimension x
+// num_points.
+std::vector<Eigen::MatrixXd> MeasuredMinusAtPoints(
+    Scene scene, const Eigen::MatrixXd& displacement) {
+  RemoveFreeRotation(scene);
+  const Mesh& mesh = scene.mesh;
+  std::vector<Eigen::MatrixXd> differences;
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const PointDisplacements& points = scene.load_cases[k].points;
+    differences.emplace_back(points.displacement);
+    if (points.points.Size() != 0) {
+      differences.back() -=
+          Interpolate(mesh, points.points,
+                      displacement.col(Eigen::Index(k))
+                          .reshaped(mesh.Dimension(), mesh.NumNodes()));
+    }
+  }
+  return differences;
+}
+
+// Returns the scene with supports where a fit of unknown motion found them, as
+// displacements that begin with those of its nodes tell.
 Scene WithFittedSupports(Scene scene, const Eigen::MatrixXd& fitted) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     Supports supports = SupportsOf(scene, Eigen::Index(k));
     supports.displacement = supports.held.select(
         fitted.col(Eigen::Index(k))
+            .head(scene.mesh.NumDofs())
             .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes()),
         supports.displacement);
     supports.unknown.resize(0, 0);
@@ -187,16 +216,32 @@ Scene WithFittedSupports(Scene scene, const Eigen::MatrixXd& fitted) {
   return scene;
 }
 
-// Returns the scene of the fit, or with finer elements, of which a fit of
-// unknown motion tells the displacements at the nodes of `scene` alone.
-Scene SolvedScene(const Scene& scene, const Scene& modelled,
-                  const Eigen::MatrixXd& fitted) {
+// The scenes that a fit solved for.
+struct SolvedScenes {
+  Scene undivided;
+  std::optional<Scene> divided;
+
+  const Scene& Finest() const { return divided ? *divided : undivided; }
+};
+
+// Returns the scenes of the fit, of whose elements `modelled` has the order.
+// A fit of unknown motion tells the displacements at the nodes of `scene` alone
+// where it has finer elements.
+SolvedScenes ScenesOfFit(const Scene& scene, const Scene& modelled,
+                         const Estimate& estimate) {
+  const Eigen::MatrixXd& fitted = estimate.fitted_displacement;
+  SolvedScenes solved;
   if (fitted.size() == 0) {
-    return modelled;
+    solved.undivided = modelled;
+  } else if (fitted.rows() == modelled.mesh.NumDofs()) {
+    solved.undivided = WithFittedSupports(modelled, fitted);
+  } else {
+    solved.undivided = FinerScene(WithFittedSupports(scene, fitted));
   }
-  return fitted.rows() == modelled.mesh.NumDofs()
-             ? WithFittedSupports(modelled, fitted)
-             : FinerScene(WithFittedSupports(scene, fitted));
+  if (estimate.mesh_divisions > 0 && !estimate.map) {
+    solved.divided = FinerScene(solved.undivided);
+  }
+  return solved;
 }
 
 // Returns the parameters of WithMaterialOfEachElement.
@@ -207,30 +252,63 @@ Eigen::VectorXd ValuesOfMap(const MapEstimate& map) {
   return values;
 }
 
+// Returns the forces of the held nodes of `scene`.
+Eigen::MatrixXd ReactionOf(const Scene& scene, const SolvedScenes& solved,
+                           const Eigen::MatrixXd& imbalance) {
+  Eigen::MatrixXd reaction = OfHeld(solved.Finest(), imbalance);
+  if (solved.divided) {
+    reaction = MiddleNodes(solved.divided->mesh).Restrict(reaction);
+  }
+  return scene.mesh.Order() == 2
+             ? reaction
+             : MiddleNodes(solved.undivided.mesh).Restrict(reaction);
+}
+
 // Adds the displacements of a model, and what they leave of the measured ones
 // and, by `imbalance` of internal forces and loads, of the supports.
-void AddFitted(const Scene& scene, const Scene& solved,
+void AddFitted(const Scene& scene, const SolvedScenes& solved,
                const Eigen::MatrixXd& fitted, const Eigen::MatrixXd& imbalance,
-               const Estimate& estimate, FieldCollector& collector) {
-  const Eigen::MatrixXd difference = MeasuredMinus(solved, fitted);
-  const Eigen::MatrixXd held_imbalance = OfHeld(solved, imbalance);
-  const Eigen::MatrixXd reaction =
-      scene.mesh.Order() == 2
-          ? held_imbalance
-          : MiddleNodes(solved.mesh).Restrict(held_imbalance);
+               const Estimate& estimate, SceneResults& results) {
+  FieldCollector collector(scene.mesh, results.fields);
+  const Eigen::MatrixXd difference = MeasuredMinus(solved.Finest(), fitted);
+  const Eigen::MatrixXd reaction = ReactionOf(scene, solved, imbalance);
   collector.AddOutliers(estimate.outliers);
   for (Eigen::Index k = 0; k < fitted.cols(); ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);
     collector.AddPoint("reaction_force", k, reaction);
   }
+  results.point_residuals = MeasuredMinusAtPoints(solved.Finest(), fitted);
+}
+
+// Adds by how much the displacement of finer elements differs from that of the
+// elements of the scene, of the same supports.
+void AddMeshError(const Eigen::MatrixXd& finer, const Eigen::MatrixXd& own,
+                  FieldCollector& collector) {
+  const Eigen::MatrixXd error = finer.topRows(own.rows()) - own;
+  for (Eigen::Index k = 0; k < error.cols(); ++k) {
+    collector.AddPoint("mesh_error", k, error);
+  }
+}
+
+// Returns the scene, with the supports of the fit, whose own elements are less
+// fine than those of the fit; empty where they are not.
+std::optional<Scene> CoarserScene(const Scene& scene,
+                                  const SolvedScenes& solved,
+                                  const Estimate& estimate) {
+  if (solved.Finest().mesh.NumNodes() == scene.mesh.NumNodes()) {
+    return std::nullopt;
+  }
+  const Eigen::MatrixXd& fitted = estimate.fitted_displacement;
+  return fitted.size() == 0 ? scene : WithFittedSupports(scene, fitted);
 }
 
 // Adds what the model says at these parameters of its materials, which have
 // laws of small strains.
 void AddModel(const Scene& scene, const Scene& modelled,
               const Eigen::VectorXd& values, const Estimate& estimate,
-              SolverKind solver, FieldCollector& collector) {
+              SolverKind solver, SceneResults& results) {
+  FieldCollector collector(scene.mesh, results.fields);
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene).empty()) {
     const Eigen::MatrixXd force = AssembleLoadCases(scene);
@@ -245,19 +323,26 @@ void AddModel(const Scene& scene, const Scene& modelled,
     }
     return;
   }
-  const Scene solved =
-      SolvedScene(scene, modelled, estimate.fitted_displacement);
-  Equilibrium model(solved, solver);
+  const SolvedScenes solved = ScenesOfFit(scene, modelled, estimate);
+  Equilibrium model(solved.Finest(), solver);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
   if (!model.Solve(moduli)) {
     return;
   }
   const Eigen::MatrixXd& fitted = model.Displacement();
   AddFitted(scene, solved, fitted,
-            model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(solved),
-            estimate, collector);
+            model.Forces().Multiply(moduli, fitted) -
+                AssembleLoadCases(solved.Finest()),
+            estimate, results);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
-    collector.AddStrainEnergy(solved.mesh, model.Forces(), moduli, k, fitted);
+    collector.AddStrainEnergy(solved.Finest().mesh, model.Forces(), moduli, k,
+                              fitted);
+  }
+  if (const auto coarser = CoarserScene(scene, solved, estimate)) {
+    Equilibrium own(*coarser, solver);
+    if (own.Solve(own.Forces().Parameters().Moduli(values))) {
+      AddMeshError(fitted, own.Displacement(), collector);
+    }
   }
 }
 
@@ -266,48 +351,56 @@ void AddModel(const Scene& scene, const Scene& modelled,
 // equilibrium.
 void AddLargeStrainModel(const Scene& scene, const Scene& modelled,
                          const Eigen::VectorXd& values,
-                         const Estimate& estimate, FieldCollector& collector) {
+                         const Estimate& estimate, SceneResults& results) {
   if (!WhyNotHeld(scene).empty()) {
     return;
   }
-  const Scene solved =
-      SolvedScene(scene, modelled, estimate.fitted_displacement);
-  LargeStrainEquilibrium model(solved);
-  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
-  const LargeStrainSolution solution = SolveLoadCases(moduli, model);
-  if (solution.why_not.empty()) {
-    AddFitted(scene, solved, solution.displacement, solution.imbalance,
-              estimate, collector);
+  const auto solve = [&values](const Scene& of) {
+    LargeStrainEquilibrium model(of);
+    return SolveLoadCases(model.Forces().Parameters().Moduli(values), model);
+  };
+  const SolvedScenes solved = ScenesOfFit(scene, modelled, estimate);
+  const LargeStrainSolution fit = solve(solved.Finest());
+  if (!fit.why_not.empty()) {
+    return;
+  }
+  AddFitted(scene, solved, fit.displacement, fit.imbalance, estimate, results);
+  if (const auto coarser = CoarserScene(scene, solved, estimate)) {
+    const LargeStrainSolution own = solve(*coarser);
+    if (own.why_not.empty()) {
+      FieldCollector collector(scene.mesh, results.fields);
+      AddMeshError(fit.displacement, own.displacement, collector);
+    }
   }
 }
 
 }  // namespace
 
-Fields ResultFields(const Scene& scene, const Scene& modelled,
-                    const Estimate& estimate, SolverKind solver) {
-  Fields fields = SceneFields(scene);
-  const std::optional<Eigen::VectorXd> values = PhysicalParameters(estimate);
+SceneResults ResultsOf(const Scene& scene, const Scene& modelled,
+                       const Estimate& estimate, SolverKind solver) {
+  SceneResults results = {SceneFields(scene), {}};
+  const std::optional<Eigen::VectorXd> values = FittedParameters(estimate);
   if (!values) {
-    return fields;
+    return results;
   }
-  FieldCollector collector(scene.mesh, fields);
+  FieldCollector collector(scene.mesh, results.fields);
   if (estimate.map) {
     collector.AddMap(*estimate.map);
     AddModel(WithMaterialOfEachElement(scene),
              WithMaterialOfEachElement(modelled), ValuesOfMap(*estimate.map),
-             estimate, solver, collector);
-    return fields;
+             estimate, solver, results);
+    return results;
   }
   if (!IsOneIsotropicMaterial(scene.materials)) {
     collector.AddParameters(scene, estimate);
     collector.AddResiduals(scene, estimate);
   }
   if (HasLargeStrainLaw(scene.materials)) {
-    AddLargeStrainModel(scene, modelled, *values, estimate, collector);
+    AddLargeStrainModel(scene, modelled, *values, estimate, results);
   } else {
-    AddModel(scene, modelled, *values, estimate, solver, collector);
+    AddModel(scene, modelled, *values, estimate, solver, results);
   }
-  return fields;
+  return results;
 }
 
 }  // namespace elastimate

@@ -28,7 +28,7 @@ if("estimators" IN_LIST ELASTIMATE_COMPONENTS OR "io" IN_LIST ELASTIMATE_COMPONE
 endif()
 
 if("io" IN_LIST ELASTIMATE_COMPONENTS)
-  find_dependency(VTK 9.1 COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore IOXML IOXMLParser)
+  find_dependency(VTK 9.1 COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore IOCore IOXML IOXMLParser)
   find_dependency(nlohmann_json 3.9)
   find_dependency(pugixml 1.10)
   find_dependency(LibCSV)

@@ -11,6 +11,9 @@ packages=(
   pybind11-dev python3-dev python3-numpy python3-matplotlib python3-setuptools python3-pytest python3-pip mypy
 )
 
+# The page of `elastimate report` is bundled by npm, of Debian or another one.
+command -v npm >/dev/null || packages+=(nodejs npm)
+
 missing=()
 for package in "${packages[@]}"; do
   if [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)" != installed ]; then

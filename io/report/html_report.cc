@@ -1,0 +1,70 @@
+#include "elastimate/io/report/html_report.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "elastimate/core/package/package_file.h"
+#include "elastimate/io/report/page_specimen.h"
+
+namespace elastimate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kPageFile = "report.html";
+constexpr const char* kPlaceOfData = "<!--data-->";
+
+// Returns what the command line calls each parameter, and whether its errors
+// are relative.
+Json LabelsJson(const Estimate& estimate) {
+  Json labels = Json::array();
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    labels.push_back({{"label", parameter.Label()},
+                      {"is_relative", parameter.IsStiffness()}});
+  }
+  return labels;
+}
+
+// Returns JSON in which no text ends the element of HTML around it.
+std::string WithinHtml(const Json& json) {
+  std::string text;
+  for (const char character : json.dump()) {
+    text += character == '<' ? "\\u003c" : std::string(1, character);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ReadPage() {
+  const std::string path = FindPackageFile(kPageFile);
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  if (text.str().find(kPlaceOfData) == std::string::npos) {
+    throw std::invalid_argument(
+        "this build has no page for reports; build elastimate with npm "
+        "(ELASTIMATE_BUILD_PAGE=ON) where npm reaches its packages, or use "
+        "estimate with --json and --out");
+  }
+  return text.str();
+}
+
+std::string HtmlReport(const std::string& page, const Scene& scene,
+                       const Estimate& estimate, const SceneResults& results,
+                       const PageTexts& texts) {
+  const Json data = {
+      {"title", texts.title},
+      {"command", texts.command},
+      {"report", Json::parse(texts.report)},
+      {"labels", LabelsJson(estimate)},
+      {"frames", texts.frames.empty() ? Json(nullptr) : Json(texts.frames)},
+      {"frame", texts.frame ? Json(*texts.frame) : Json(nullptr)},
+      {"specimen", PageSpecimen(scene, estimate, results)}};
+  std::string html = page;
+  const std::string place = kPlaceOfData;
+  return html.replace(html.find(place), place.size(), WithinHtml(data));
+}
+
+}  // namespace elastimate
