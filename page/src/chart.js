@@ -3,7 +3,7 @@
 import { svg } from "./elements.js";
 import { numberText, ticks } from "./numbers.js";
 
-const margin = { left: 68, right: 16, top: 14, bottom: 50 };
+const margin = { left: 100, right: 16, top: 14, bottom: 50 };
 
 const sizeOf = (range) => range[1] - range[0] || 1;
 
@@ -38,7 +38,7 @@ export function chart({ width = 560, height = 260, x: xRange, y: yRange, xTitle,
       ]),
     svg("line", { x1: margin.left, x2: right, y1: bottom, y2: bottom, class: "axis" }),
     svg("text", { x: (margin.left + right) / 2, y: height - 6, class: "title middle" }, xTitle),
-    svg("text", { transform: `translate(13 ${(margin.top + bottom) / 2}) rotate(-90)`, class: "title middle" }, yTitle),
+    svg("text", { transform: `translate(16 ${(margin.top + bottom) / 2}) rotate(-90)`, class: "title middle" }, yTitle),
   );
   return { element, x, y, add: (...children) => element.append(...children.flat(Infinity).filter(Boolean)) };
 }

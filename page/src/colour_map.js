@@ -13,7 +13,7 @@ const stops = [
 ];
 
 // The largest number of bands, but for one at either end.
-export const numBands = 8;
+export const numBands = 10;
 
 /** Returns the colour, [red, green, blue] from 0 to 255, of a value from 0 to 1. */
 export function colourOf(t) {

@@ -73,12 +73,12 @@ function budgetOf(place) {
 function parameterSection() {
   const nu = parameters.filter(({ name }) => name === "poisson_ratio");
   const interval = nu.length === 1 && nu[0].interval !== null && nu[0].value !== null && intervalChart(nu[0].value, nu[0].interval);
-  // Many parameters would make more bars than anybody reads.
+  // Many parameters would make more bars than anybody reads, and more than a printed page has room for.
   const budgets = parameters.length <= 6 ? parameters.map((_, place) => budgetOf(place)).filter(Boolean) : [];
   return section(
     "Parameters",
     parameterTable(),
-    html("div", { class: "columns" }, budgets, interval ? html("div", {}, html("h3", {}, "Where nu lies"), interval) : null),
+    html("div", { class: parameters.length > 3 ? "columns screen" : "columns" }, budgets, interval ? html("div", {}, html("h3", {}, "Where nu lies"), interval) : null),
   );
 }
 
@@ -119,7 +119,7 @@ function seriesSection() {
   return section(
     "Frame by frame",
     html("p", {}, `${used} of ${frames} frames are used. Dots with bars: frames with their standard error. Crosses: frames that are not usable. Line and band: all frames together.`),
-    html("div", { class: "columns" }, columns.slice(0, 4).map((column, i) => seriesChart(rows, column, data.labels[i]?.label ?? column))),
+    html("div", { class: "columns" }, columns.slice(0, 4).map((column, i) => seriesChart(rows, column, longLabel(data.labels[i]?.label ?? column)))),
   );
 }
 

@@ -168,7 +168,7 @@ export class Viewer {
     if (categories.length > 0 && categories.length <= (isOfRegions ? mostRegions : mostValues)) {
       this.bands = { lower: -0.5, upper: categories.length - 0.5, count: categories.length, hasLines: false };
       this.shown = Float32Array.from(this.field.values, (value) => (Number.isFinite(value) ? categories.indexOf(value) : NaN));
-      this.legend.replaceChildren(categoryLegend(categories.map(isOfRegions ? this.labelOfRegion : (value) => numberText(value, 5))));
+      this.legend.replaceChildren(categoryLegend(categories.map(isOfRegions ? this.labelOfRegion : (value) => `${words.title} ${numberText(value, 5)}`)));
     } else {
       const ends = this.field ? bandsOf(this.field.values) : null;
       this.bands = { ...(ends ?? { lower: 0, upper: 1, count: 1 }), hasLines: this.field?.isOfNodes ?? false };

@@ -21,6 +21,11 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+// A failure does not show the page, which is long.
+bool Has(const std::string& page, const std::string& part) {
+  return page.find(part) != std::string::npos;
+}
+
 // Each test starts a browser, which takes some seconds.
 class PageInBrowserLong : public testing::ProgramTest {
  protected:
@@ -127,7 +132,7 @@ TEST_F(PageInBrowserLong, ShowsASpecimenInSpace) {
   EXPECT_THAT(text, HasSubstr("elastimate report block/scene.json"));
   for (const std::string field :
        {"displacement", "mesh_error", "residual", "strain_energy_density"}) {
-    EXPECT_THAT(page, HasSubstr("<option value=\"" + field + "\""));
+    EXPECT_TRUE(Has(page, "<option value=\"" + field + "\""));
   }
   // The outer surface of 4 x 4 x 4 cells has 192 triangles.
   EXPECT_GT(NumTriangles(page), 192);
@@ -151,8 +156,8 @@ TEST_F(PageInBrowserLong, ShowsRegions) {
   Report("regions/block.vtu --regions=merge --estimator=auto");
   const std::string page = Drawn();
   const std::string text = TextOf(page);
-  EXPECT_THAT(text, HasSubstr("regions 1 and 3"));
-  EXPECT_THAT(page, HasSubstr("<option value=\"youngs_modulus\""));
+  EXPECT_THAT(text, HasSubstr("regions 2 and 3"));
+  EXPECT_TRUE(Has(page, "<option value=\"youngs_modulus\""));
 }
 
 TEST_F(PageInBrowserLong, ShowsAMap) {
@@ -162,7 +167,7 @@ TEST_F(PageInBrowserLong, ShowsAMap) {
   Report("regions/block.vtu --map=youngs_modulus --estimator=auto");
   const std::string page = Drawn();
   EXPECT_THAT(TextOf(page), HasSubstr("Map of Young's modulus"));
-  EXPECT_THAT(page, HasSubstr("<option value=\"resolution_length\""));
+  EXPECT_TRUE(Has(page, "<option value=\"resolution_length\""));
 }
 
 TEST_F(PageInBrowserLong, SaysFirstWhyAnEstimateIsRefused) {
@@ -182,7 +187,7 @@ TEST_F(PageInBrowserLong, ShowsASeries) {
   Report("scene.json --estimator=auto");
   const std::string page = Drawn();
   EXPECT_THAT(TextOf(page), HasSubstr("Frame by frame"));
-  EXPECT_THAT(page, HasSubstr("aria-label=\"E of each frame\""));
+  EXPECT_TRUE(Has(page, "aria-label=\"Young's modulus E of each frame\""));
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST_F(Page, HasAsMuchResidualAsTheReportSays) {
 // The same two solutions as `simulate` computes them, at the parameters of the
 // fit.
 TEST_F(Page, HasTheMeshErrorOfTheFields) {
-  Simulate("rectangle --elements=tri3 --cells=6,3 --force=0,100",
+  Simulate("rectangle --elements=tri3 --cells=24,6 --force=0,1e-4",
            "--noise=0.001 --order=2");
   const json report =
       Succeed(
@@ -196,7 +196,7 @@ TEST_F(Page, HasTheMeshErrorOfTheFields) {
   const Eigen::MatrixXd linear = field("linear.vtu", "displacement");
   const Eigen::MatrixXd expected =
       field("quadratic.vtu", "displacement") - linear;
-  EXPECT_GT(expected.norm(), 0.05 * linear.norm());
+  EXPECT_GT(expected.norm(), 0.02 * linear.norm());
   EXPECT_LT((field("fields.vtu", "mesh_error") - expected).norm(),
             1e-5 * expected.norm());
 }
@@ -213,9 +213,9 @@ TEST_F(Page, OfTwentyThousandElementsHasTwoMegabytesAtMost) {
 }
 
 TEST_F(Page, LeavesOutLoadCasesForWhichThereIsNoRoom) {
-  Succeed("generate cuboid --cells=12,12,12 --size=1,1,1 --out=scene.vtu");
+  Succeed("generate rectangle --cells=120,60 --out=scene.vtu");
   std::string files;
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const std::string name = "case_" + std::to_string(i) + ".vtu";
     Succeed("simulate scene.vtu --youngs=50000 --nu=0.3 --noise=0.001 --seed=" +
             std::to_string(i) + " --out=" + name);
@@ -225,7 +225,7 @@ TEST_F(Page, LeavesOutLoadCasesForWhichThereIsNoRoom) {
   const json specimen = Data()["specimen"];
   const int num_left_out = specimen["cases_left_out"];
   EXPECT_GT(num_left_out, 0);
-  EXPECT_EQ(specimen["cases"].size() + std::size_t(num_left_out), 12U);
+  EXPECT_EQ(specimen["cases"].size() + std::size_t(num_left_out), 5U);
   EXPECT_LE(std::filesystem::file_size(folder_ / "report.html"), 2000000U);
 }
 

@@ -27,7 +27,7 @@ test("bands next to each other differ by five steps of lightness at least", () =
 
 test("bands hold all values, and those that are not known count for nothing", () => {
   assert.deepStrictEqual(bandsOf([NaN, 1, 4]), { lower: 0, upper: 4, count: 8 });
-  assert.deepStrictEqual(bandsOf([3, 4]), { lower: 3, upper: 4, count: 5 });
+  assert.deepStrictEqual(bandsOf([3, 4]), { lower: 3, upper: 4, count: 10 });
   assert.strictEqual(bandsOf([NaN]), null);
   const { lower, upper } = bandsOf([7, 7]);
   assert.ok(lower <= 7 && upper > 7);
