@@ -7,14 +7,18 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "elastimate/estimators/material_fit/fitted_scene.h"
 #include "elastimate/estimators/registry.h"
+#include "elastimate/io/report/html_report.h"
 #include "elastimate/io/report/report.h"
+#include "elastimate/io/report/scene_results.h"
 #include "elastimate/io/report/summary.h"
+#include "elastimate/io/text/file_output.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_scene.h"
@@ -32,6 +36,9 @@ struct PythonEstimate {
   EstimatorOptions options;
   Estimate estimate;
   double seconds;
+  /// The displacements of a later measurement than that of the scene, for each
+  /// load case; empty for that of the scene.
+  std::vector<Eigen::MatrixXd> displacements = {};
 
   ReportTimes Times() const {
     return {modelled->read_seconds, modelled->read_seconds + seconds};
@@ -43,8 +50,35 @@ struct PythonEstimate {
     return JsonReport(estimate, Reported(), options, Times(),
                       modelled->notices);
   }
+  void WritePage(const std::string& path, const std::string& title,
+                 const std::string& command) const {
+    const std::string page = ReadPage();
+    Scene scene = Measured();
+    const std::optional<Scene> fitted = FittedScene(scene, estimate);
+    if (!estimate.large_strain_law.empty()) {
+      scene.materials = fitted->materials;
+    }
+    const SceneResults results =
+        ResultsOf(scene, fitted ? *fitted : scene, estimate, options.solver);
+    StagedFiles files;
+    files.Add(path, HtmlReport(page, scene, estimate, results,
+                               {title, command, Json(), ""}));
+    files.Commit();
+  }
 
  private:
+  Scene Measured() const {
+    Scene scene = modelled->scene;
+    for (std::size_t k = 0; k < displacements.size(); ++k) {
+      LoadCase& load_case = scene.load_cases[k];
+      if (load_case.points.points.Size() == 0) {
+        load_case.displacement = displacements[k];
+      } else {
+        load_case.points.displacement = displacements[k];
+      }
+    }
+    return scene;
+  }
   Scene Reported() const {
     return FittedScene(modelled->scene, estimate).value_or(modelled->scene);
   }
@@ -85,7 +119,10 @@ class PythonPrepared {
     }
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return Timed(scene_, options_, [&] { return prepared_.Run(columns); });
+    PythonEstimate estimate =
+        Timed(scene_, options_, [&] { return prepared_.Run(columns); });
+    estimate.displacements = std::move(columns);
+    return estimate;
   }
 
  private:
@@ -157,7 +194,9 @@ void BindEstimate(py::module_& module) {
                                              self);
                              })
       .def("summary", &PythonEstimate::Summary, Released())
-      .def("json", &PythonEstimate::Json, Released());
+      .def("json", &PythonEstimate::Json, Released())
+      .def("write_page", &PythonEstimate::WritePage, py::arg("path"),
+           py::arg("title"), py::arg("command"), Released());
 
   py::class_<PythonPrepared>(module, "Prepared")
       .def(py::init<const std::shared_ptr<PythonScene>&, const std::string&,

@@ -91,8 +91,8 @@ function firstField(specimen) {
   if (!report.usable) {
     return "residual";
   }
-  const ofMaterials = specimen.fields.some(({ name }) => name === "youngs_modulus");
-  return ofMaterials ? "youngs_modulus" : "displacement";
+  const moduli = specimen.fields.find(({ name }) => name === "youngs_modulus");
+  return moduli && moduli.values.some((value) => value !== moduli.values[0]) ? "youngs_modulus" : "displacement";
 }
 
 function specimenSection(specimen, viewer) {

@@ -66,7 +66,7 @@ function fitSentence({ report }) {
   const residual = report.residual.displacement_relative;
   const objections =
     warnings === 0
-      ? "the program has nothing to object to"
+      ? "no check of the program contradicts this estimate"
       : `the program warns of ${counted(warnings, "thing")}, which the findings below explain`;
   return residual === null
     ? sentence(objections)

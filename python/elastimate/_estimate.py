@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,8 +40,9 @@ class Estimate:
     of this label, symbol or name.
     """
 
-    def __init__(self, core: _core.Estimate) -> None:
+    def __init__(self, core: _core.Estimate, call: str) -> None:
         self._core = core
+        self._call = call
 
     @property
     def estimator(self) -> str:
@@ -91,6 +93,20 @@ class Estimate:
         from ._plot import plot
 
         return plot(self)
+
+    def report(self, path: str | os.PathLike[str], title: str = "the specimen") -> None:
+        """Writes a page for people, one file of HTML (docs/report.md).
+
+        path   name of the file, which ends in .html
+        title  the page is named "Elasticity of" this
+
+        Raises ValueError where the file cannot be written, and where elastimate was built without
+        npm, which makes the page.
+        """
+        name = os.fspath(path)
+        if not name.lower().endswith(".html"):
+            raise ValueError(f"{name}: the name of a page must end in .html")
+        self._core.write_page(name, title, f"{self._call}.report({name!r})")
 
     def __str__(self) -> str:
         return self._core.summary()

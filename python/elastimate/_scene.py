@@ -255,7 +255,10 @@ class Scene:
         Other threads run meanwhile.
         """
         scene = self._prepared(order, noise_sd, origin, map)
-        return Estimate(_core.run(scene, estimator, _core.Options(**options)))
+        call = _call(
+            "estimate", estimator, noise_sd=noise_sd, origin=origin, order=order, map=map, **options
+        )
+        return Estimate(_core.run(scene, estimator, _core.Options(**options)), call)
 
     def prepare(
         self,
@@ -272,9 +275,10 @@ class Scene:
         once.
         """
         scene = self._prepared(order, noise_sd, origin, None)
-        return PreparedEstimator(
-            _core.Prepared(scene, estimator, _core.Options(**options)), self._core.num_cases
+        call = _call(
+            "prepare", estimator, noise_sd=noise_sd, origin=origin, order=order, **options
         )
+        return PreparedEstimator(_core.Prepared(scene, estimator, _core.Options(**options)), call)
 
     def simulate(
         self,
@@ -320,12 +324,20 @@ class Scene:
         )
 
 
+def _call(method: str, estimator: str, order: int, **given: Any) -> str:
+    """Returns the call of a method of a scene, without what is left at its default."""
+    if order != 1:
+        given["order"] = order
+    options = [f"{name}={value!r}" for name, value in given.items() if value is not None]
+    return f"scene.{method}({', '.join([repr(estimator), *options])})"
+
+
 class PreparedEstimator:
     """An estimator that ``Scene.prepare`` has made ready for one specimen after another."""
 
-    def __init__(self, core: _core.Prepared, num_cases: int) -> None:
+    def __init__(self, core: _core.Prepared, call: str) -> None:
         self._core = core
-        self._num_cases = num_cases
+        self._call = call
 
     def run(self, displacements: ArrayLike) -> Estimate:
         """Estimates from displacements of shape (n, d), or (k, n, d) for k load cases [length].
@@ -335,7 +347,7 @@ class PreparedEstimator:
         """
         values = np.asarray(displacements, dtype=float)
         frames = list(values) if values.ndim == 3 else [values]
-        return Estimate(self._core.run(frames))
+        return Estimate(self._core.run(frames), f"{self._call}.run(displacements)")
 
 
 def read(

@@ -1,5 +1,6 @@
 """Estimates: they are those of the command line, may be stopped, and let other threads run."""
 
+import base64
 import json
 import os
 import re
@@ -129,6 +130,37 @@ def test_notebooks_and_figures(arrays):
     assert figure.axes[0].get_title(loc="left").startswith("E = ")
     assert any(bar.get_width() > 0 for bar in figure.axes[0].patches)
     json.dumps(estimate.to_dict())
+
+
+def page_data(path):
+    text = path.read_text()
+    start = '<script type="application/json" id="data">'
+    return json.loads(text[text.index(start) + len(start) :].split("</script>")[0])
+
+
+def residuals(data):
+    points = data["specimen"]["cases"][0]["points"]
+    return np.frombuffer(base64.b64decode(points["residual"]), dtype="<f4")
+
+
+def test_reports_are_pages_of_the_measurement(arrays, tmp_path):
+    scene = em.Scene(**arrays).simulate(E=1e4, nu=0.3, noise_sd=1e-5)
+    page = tmp_path / "page.html"
+    with pytest.raises(ValueError, match="must end in .html"):
+        scene.estimate("closed-form").report(tmp_path / "page.txt")
+    try:
+        scene.estimate("iterative-fe", noise_sd=1e-5).report(page, "a cube")
+    except ValueError as error:
+        if "npm" not in str(error):
+            raise
+        pytest.skip(str(error))
+    data = page_data(page)
+    assert data["title"] == "a cube"
+    assert data["command"] == f"scene.estimate('iterative-fe', noise_sd=1e-05).report({str(page)!r})"
+    # A prepared estimator is of another measurement, from which the residuals are.
+    prepared = em.Scene(**arrays).simulate(E=2e4, nu=0.3).prepare("iterative-fe", noise_sd=1e-5)
+    prepared.run(scene.displacements).report(page)
+    np.testing.assert_allclose(residuals(page_data(page)), residuals(data), rtol=1e-3, atol=1e-9)
 
 
 def test_prepared_estimators_give_what_estimate_gives(arrays):

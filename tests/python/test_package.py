@@ -19,12 +19,17 @@ def blocks(document):
 
 def test_code_of_the_guide_runs(monkeypatch, tmp_path):
     """The blocks of docs/python.md build on each other, in its order."""
-    monkeypatch.chdir(SOURCE)
+    (tmp_path / "examples").symlink_to(SOURCE / "examples")
+    monkeypatch.chdir(tmp_path)
     code = blocks("docs/python.md")
     assert len(code) >= 8
     names = {}
     for block in code:
-        exec(compile(block, "docs/python.md", "exec"), names)
+        try:
+            exec(compile(block, "docs/python.md", "exec"), names)
+        except ValueError as error:
+            # The page of reports is left out of builds that npm did not serve.
+            assert ".report(" in block and "build elastimate with npm" in str(error)
     assert names["estimate"].is_usable
 
 

@@ -1,4 +1,4 @@
-#include "apps/result_fields.h"
+#include "elastimate/io/report/scene_results.h"
 
 #include <algorithm>
 #include <cmath>
