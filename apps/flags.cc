@@ -263,8 +263,8 @@ Command TheCheckCommand() {
 
 Command TheGenerateCommand() {
   return {"generate",
-          "cuboid|organ|plate|rectangle",
-          "writes an example scene, with supports and loads",
+          "SHAPE",
+          "writes an example scene: cuboid, organ, plate or rectangle",
           {{"Shape",
             {{"elements"},
              {"cells"},

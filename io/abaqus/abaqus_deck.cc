@@ -186,9 +186,7 @@ class DeckParser {
     NumberedMesh& mesh = scope_->mesh;
     const std::size_t type = mesh.types.size();
     mesh.types.push_back(AbaqusType(name));
-    const std::size_t due = mesh.types[type].kind
-                                ? TopologyOf(*mesh.types[type].kind).num_nodes
-                                : 0;
+    const auto due = static_cast<std::size_t>(mesh.types[type].NumNodes());
     AbaqusSet set = NewSet(block, "ELSET", Members::kElements);
     for (std::size_t i = 0; i < block.data.size(); ++i) {
       const KeywordData& first = block.data[i];

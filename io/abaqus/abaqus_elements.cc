@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 namespace elastimate {
 namespace {
@@ -82,6 +84,14 @@ NumberedType AbaqusType(const std::string& name) {
     type.num_vertices = TopologyOf(found->second).num_vertices;
     return type;
   }
+  // The vertices of what is cut into simplices, and whether it is quadratic.
+  static const std::map<std::string, std::pair<int, bool>> kCut = {
+      {"C3D5", {5, false}}, {"C3D6", {6, false}}, {"C3D15", {6, true}},
+      {"C3D20", {8, true}}, {"CPS8", {4, true}},  {"CPE8", {4, true}}};
+  if (const auto found = kCut.find(FullAbaqusType(name)); found != kCut.end()) {
+    std::tie(type.num_vertices, type.has_middles) = found->second;
+    return type;
+  }
   type.mend = MendOf(name);
   if (type.dimension == 2) {
     const int num_nodes = NumNodesInName(name);
@@ -92,17 +102,24 @@ NumberedType AbaqusType(const std::string& name) {
   return type;
 }
 
-std::vector<int> AbaqusFace(ElementKind kind, const std::string& label) {
+std::vector<int> AbaqusFace(const NumberedType& type,
+                            const std::string& label) {
   using Faces = std::vector<std::vector<int>>;
   static const Faces kTetrahedron = {
       {0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
   static const Faces kHexahedron = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
                                     {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
-  const ElementTopology& topology = TopologyOf(kind);
+  static const Faces kPyramid = {
+      {0, 1, 2, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
+  static const Faces kWedge = {
+      {0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
   // The edges of planar elements are in the order of Abaqus.
-  const Faces& faces = topology.dimension == 2      ? topology.faces
-                       : topology.num_vertices == 4 ? kTetrahedron
-                                                    : kHexahedron;
+  const Faces& faces = type.dimension == 2
+                           ? FindCellShape(2, type.num_vertices)->faces
+                       : type.num_vertices == 4 ? kTetrahedron
+                       : type.num_vertices == 5 ? kPyramid
+                       : type.num_vertices == 6 ? kWedge
+                                                : kHexahedron;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (label == "S" + std::to_string(i + 1)) {
       return faces[i];

@@ -16,9 +16,10 @@ NumberedType AbaqusType(const std::string& name);
 /// pressure and so on, "C3D8" for "C3D8RH".
 std::string FullAbaqusType(const std::string& name);
 
-/// Returns the vertices of face `label` ("S3"; of planar elements an edge), as
-/// places in the element; empty where there is no such face.
-std::vector<int> AbaqusFace(ElementKind kind, const std::string& label);
+/// Returns the vertices of face `label` ("S3"; of planar elements an edge) of
+/// an element that a scene may have, as places in it; empty where there is no
+/// such face.
+std::vector<int> AbaqusFace(const NumberedType& type, const std::string& label);
 
 }  // namespace elastimate
 

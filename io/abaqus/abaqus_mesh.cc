@@ -270,8 +270,8 @@ class Sets {
       const NumberedType& type = mesh.types[mesh.elements[place->second].type];
       NumberedFace face = {number, {}};
       if (!entry.face.empty() && entry.face != "SPOS" && entry.face != "SNEG" &&
-          type.kind) {
-        face.vertices = AbaqusFace(*type.kind, entry.face);
+          (type.kind || type.Cell() != nullptr)) {
+        face.vertices = AbaqusFace(type, entry.face);
         if (face.vertices.empty()) {
           set.block->FailAt(entry.line, "'" + Printable(entry.face) +
                                             "' is no face of an element of "
@@ -319,11 +319,11 @@ void SetSection(const NumberedMesh& numbered, double thickness,
   }
   const bool has_stress = std::any_of(
       numbered.types.begin(), numbered.types.end(), [](const NumberedType& t) {
-        return t.kind && t.name.rfind("CPS", 0) == 0;
+        return t.NumNodes() > 0 && t.name.rfind("CPS", 0) == 0;
       });
   const bool has_strain = std::any_of(
       numbered.types.begin(), numbered.types.end(), [](const NumberedType& t) {
-        return t.kind && t.name.rfind("CPE", 0) == 0;
+        return t.NumNodes() > 0 && t.name.rfind("CPE", 0) == 0;
       });
   if (has_stress != has_strain) {
     const auto* const place = std::find(

@@ -24,30 +24,38 @@ NumberedType FebioType(const std::string& name) {
   // Each type that is not for scenes has the dimension and the number of
   // vertices of its facet.
   static const std::map<std::string, NumberedType> kTypes = {
-      {"tet4", {"", 3, ElementKind::kTet4, 4, ""}},
-      {"tet10", {"", 3, ElementKind::kTet10, 4, ""}},
-      {"hex8", {"", 3, ElementKind::kHex8, 8, ""}},
-      {"line2", {"", 1, {}, 2, ""}},
-      {"line3", {"", 1, {}, 2, ""}},
-      {"truss2", {"", 1, {}, 2, ""}},
-      {"tri3", {"", 2, {}, 3, ""}},
-      {"tri6", {"", 2, {}, 3, ""}},
-      {"tri7", {"", 2, {}, 3, ""}},
-      {"quad4", {"", 2, {}, 4, ""}},
-      {"q4ans", {"", 2, {}, 4, ""}},
-      {"q4eas", {"", 2, {}, 4, ""}},
-      {"quad8", {"", 2, {}, 4, ""}},
-      {"quad9", {"", 2, {}, 4, ""}}};
+      {"tet4", {"", 3, ElementKind::kTet4, 4, "", false}},
+      {"tet10", {"", 3, ElementKind::kTet10, 4, "", false}},
+      {"hex8", {"", 3, ElementKind::kHex8, 8, "", false}},
+      {"hex20", {"", 3, {}, 8, "", true}},
+      {"penta6", {"", 3, {}, 6, "", false}},
+      {"penta15", {"", 3, {}, 6, "", true}},
+      {"pyra5", {"", 3, {}, 5, "", false}},
+      {"pyra13", {"", 3, {}, 5, "", true}},
+      {"line2", {"", 1, {}, 2, "", false}},
+      {"line3", {"", 1, {}, 2, "", false}},
+      {"truss2", {"", 1, {}, 2, "", false}},
+      {"tri3", {"", 2, {}, 3, "", false}},
+      {"tri6", {"", 2, {}, 3, "", false}},
+      {"tri7", {"", 2, {}, 3, "", false}},
+      {"quad4", {"", 2, {}, 4, "", false}},
+      {"q4ans", {"", 2, {}, 4, "", false}},
+      {"q4eas", {"", 2, {}, 4, "", false}},
+      {"quad8", {"", 2, {}, 4, "", false}},
+      {"quad9", {"", 2, {}, 4, "", false}}};
   const auto found = kTypes.find(name);
-  NumberedType type =
-      found == kTypes.end() ? NumberedType{"", 3, {}, 0, ""} : found->second;
+  NumberedType type = found == kTypes.end()
+                          ? NumberedType{"", 3, {}, 0, "", false}
+                          : found->second;
   type.name = name;
-  type.mend =
-      type.dimension == 3
-          ? "but the solid elements of FEBio that are read are tet4, tet10 and "
-            "hex8; mesh the specimen with one of these (FEBio Studio: Mesh > "
-            "Convert)"
-          : "but a scene needs solid elements; mesh the volume";
+  if (type.dimension < 3) {
+    type.mend = "but a scene needs solid elements; mesh the volume";
+  } else if (found == kTypes.end()) {
+    type.mend =
+        "but the solid elements of FEBio that are read are tet4, tet10, hex8, "
+        "hex20, penta6, penta15, pyra5 and pyra13; mesh the specimen with "
+        "these (FEBio Studio: Mesh > Convert)";
+  }
   return type;
 }
 
@@ -159,9 +167,8 @@ class FebioReader {
       const std::vector<std::size_t> nodes =
           ListIn<std::size_t>(part, element.child_value());
       const std::size_t id = IdOf(part, element);
-      const std::size_t due =
-          of_part.kind ? TopologyOf(*of_part.kind).num_nodes : nodes.size();
-      if (nodes.size() != due) {
+      const auto due = static_cast<std::size_t>(of_part.NumNodes());
+      if (due > 0 && nodes.size() != due) {
         Fail(part, "has element " + std::to_string(id) + " of type " + name +
                        " with " + Counted(nodes.size(), "node") + " where " +
                        std::to_string(due) + " are due");

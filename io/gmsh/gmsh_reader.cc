@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "elastimate/io/mesh/numbering.h"
+#include "elastimate/io/mesh/simplices.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -42,6 +43,27 @@ constexpr std::array<GmshKind, 8> kGmshKinds = {{
 constexpr std::array<int, 27> kHexahedronInGmsh = {
     0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
     19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
+
+/// Returns the shape of an element of this type whose nodes are its vertices;
+/// null for others.
+const CellShape* FindGmshShape(int type) {
+  switch (type) {
+    case 2:
+      return FindCellShape(2, 3);
+    case 3:
+      return FindCellShape(2, 4);
+    case 4:
+      return FindCellShape(3, 4);
+    case 5:
+      return FindCellShape(3, 8);
+    case 6:
+      return FindCellShape(3, 6);
+    case 7:
+      return FindCellShape(3, 5);
+    default:
+      return nullptr;
+  }
+}
 
 /// Returns null where elements of this type are not for scenes.
 const GmshKind* FindGmshKind(int type) {
@@ -157,13 +179,13 @@ Numbering ReadNodes(MeshFile& mesh) {
   return Numbering(mesh.node_numbers);
 }
 
-int NodePosition(const MeshFile& mesh, const Numbering& nodes,
+int NodePosition(const std::filesystem::path& path, const Numbering& nodes,
                  std::size_t number) {
   const int node = nodes.Find(number);
   if (node < 0) {
-    ThrowDamagedFile(mesh.path, "an element names node number " +
-                                    std::to_string(number) +
-                                    ", which the file does not have");
+    ThrowDamagedFile(path, "an element names node number " +
+                               std::to_string(number) +
+                               ", which the file does not have");
   }
   return node;
 }
@@ -181,52 +203,48 @@ std::string ElementTypeName(int type) {
   return name;
 }
 
-/// Returns the kind of the elements of dimension 3 where there are any, else of
-/// dimension 2; they have to be of one kind.  Returns null where there are
-/// none.
-const GmshKind* FindKind(const std::filesystem::path& path,
-                         const GmshElements& elements) {
-  const GmshKind* kind = nullptr;
-  for (std::size_t i = 0; i < elements.types.size(); ++i) {
-    if (elements.numbers[i].empty()) {
-      continue;
-    }
-    const std::string name = "element number " +
-                             std::to_string(elements.numbers[i][0]) + " is a " +
-                             ElementTypeName(elements.types[i]);
-    const GmshKind* const other = FindGmshKind(elements.types[i]);
-    if (other == nullptr) {
-      ThrowInputError(path, name + ", but the elements of a scene are " +
-                                kSupportedElements +
-                                "; mesh the specimen with one kind of these");
-    }
-    if (kind != nullptr) {
-      ThrowInputError(path, name + ", but others are of type " +
-                                ElementTypeName(kind->type) +
-                                "; mesh the specimen with one kind of element");
-    }
-    kind = other;
-  }
-  return kind;
-}
-
-/// Reads the elements in ascending order of their numbers.
-Numbering ReadElements(const GmshElements& elements, const Numbering& nodes,
-                       MeshFile& mesh) {
-  const Eigen::Index num_nodes = mesh.Topology().num_nodes;
-  for (std::size_t i = 0; i < elements.types.size(); ++i) {
-    if (elements.numbers[i].empty()) {
-      continue;
-    }
-    const std::vector<std::size_t> order = SortingOrder(elements.numbers[i]);
-    mesh.elements.resize(num_nodes, order.size());
-    std::vector<std::size_t> sorted;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      sorted.push_back(elements.numbers[i][order[k]]);
-      for (Eigen::Index n = 0; n < num_nodes; ++n) {
-        mesh.elements(n, k) = NodePosition(
-            mesh, nodes, elements.nodes[i][num_nodes * order[k] + n]);
+/// The elements of dimension 3 where there are any, else of dimension 2, in
+/// ascending order of their numbers, and what they become in a scene.
+class GmshCells {
+ public:
+  GmshCells(const std::filesystem::path& path, const GmshElements& elements)
+      : path_(path), elements_(elements) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < elements.types.size(); ++i) {
+      for (std::size_t k = 0; k < elements.numbers[i].size(); ++k) {
+        cells_.push_back({i, k});
+        numbers.push_back(elements.numbers[i][k]);
       }
+    }
+    std::vector<Cell> sorted;
+    for (const std::size_t i : SortingOrder(numbers)) {
+      sorted.push_back(cells_[i]);
+    }
+    cells_ = std::move(sorted);
+    std::sort(numbers.begin(), numbers.end());
+    numbering_ = Numbering(std::move(numbers));
+    are_cut_ = AreToBeCut();
+    if (!are_cut_ && !cells_.empty()) {
+      CheckOneKind();
+    }
+  }
+
+  bool Empty() const { return cells_.empty(); }
+  bool AreCut() const { return are_cut_; }
+  const Numbering& Numbers() const { return numbering_; }
+
+  void EnterElements(const Numbering& nodes, MeshFile& mesh) {
+    if (are_cut_) {
+      CutElements(nodes, mesh);
+      return;
+    }
+    mesh.kind = FindGmshKind(TypeOf(cells_[0]))->kind;
+    const int num_nodes = mesh.Topology().num_nodes;
+    mesh.elements.resize(num_nodes, Eigen::Index(cells_.size()));
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+      const std::vector<int> of_cell = NodesOf(cells_[k], num_nodes, nodes);
+      std::copy(of_cell.begin(), of_cell.end(),
+                mesh.elements.col(Eigen::Index(k)).begin());
     }
     if (mesh.kind == ElementKind::kTet10) {
       // Gmsh has the middle of edge 23 before that of 13.
@@ -235,26 +253,137 @@ Numbering ReadElements(const GmshElements& elements, const Numbering& nodes,
     if (mesh.kind == ElementKind::kHex27) {
       mesh.elements = mesh.elements(kHexahedronInGmsh, Eigen::all).eval();
     }
-    return Numbering(std::move(sorted));
   }
-  return Numbering({});
+
+  /// Gives each element the column of its cell.
+  void SpreadOverParts(std::vector<FileArray>& arrays) const {
+    for (FileArray& array : arrays) {
+      if (are_cut_) {
+        array.values = Eigen::MatrixXd(array.values(Eigen::all, cell_of_part_));
+      }
+    }
+  }
+
+ private:
+  struct Cell {
+    std::size_t type;   // The place in elements_.
+    std::size_t place;  // Among those of the type.
+  };
+
+  int TypeOf(const Cell& cell) const { return elements_.types[cell.type]; }
+
+  std::string NameOf(const Cell& cell) const {
+    return "element number " +
+           std::to_string(elements_.numbers[cell.type][cell.place]) + " is a " +
+           ElementTypeName(TypeOf(cell));
+  }
+
+  /// Tells whether all may be cut into simplices, and are not of one kind
+  /// otherwise.
+  bool AreToBeCut() const {
+    return std::all_of(cells_.begin(), cells_.end(),
+                       [this](const Cell& cell) {
+                         return FindGmshShape(TypeOf(cell)) != nullptr;
+                       }) &&
+           std::any_of(cells_.begin(), cells_.end(), [this](const Cell& cell) {
+             return FindGmshKind(TypeOf(cell)) == nullptr ||
+                    cell.type != cells_[0].type;
+           });
+  }
+
+  void CheckOneKind() const {
+    for (const Cell& cell : cells_) {
+      if (FindGmshKind(TypeOf(cell)) == nullptr &&
+          FindGmshShape(TypeOf(cell)) == nullptr) {
+        ThrowInputError(
+            path_, NameOf(cell) + ", but the elements of a scene are " +
+                       kSupportedElements + "; mesh the specimen with these");
+      }
+      if (cell.type != cells_[0].type) {
+        ThrowInputError(path_, NameOf(cell) + ", but others are of type " +
+                                   ElementTypeName(TypeOf(cells_[0])) +
+                                   "; mesh the specimen with one kind of "
+                                   "element, or with linear ones");
+      }
+    }
+  }
+
+  std::vector<int> NodesOf(const Cell& cell, int count,
+                           const Numbering& nodes) const {
+    std::vector<int> positions;
+    for (int i = 0; i < count; ++i) {
+      positions.push_back(NodePosition(
+          path_, nodes,
+          elements_.nodes[cell.type]
+                         [std::size_t(count) * cell.place + std::size_t(i)]));
+    }
+    return positions;
+  }
+
+  void CutElements(const Numbering& nodes, MeshFile& mesh) {
+    const int dimension = FindGmshShape(TypeOf(cells_[0]))->dimension;
+    mesh.kind = dimension == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
+    Simplices simplices(dimension);
+    for (const Cell& cell : cells_) {
+      const CellShape& shape = *FindGmshShape(TypeOf(cell));
+      simplices.Add(shape, NodesOf(cell, shape.num_vertices, nodes));
+    }
+    if (const auto folded = simplices.FirstFolded(mesh.nodes)) {
+      ThrowInputError(path_, NameOf(cells_[*folded]) +
+                                 " that is folded or flat; correct the order "
+                                 "of its nodes, or mesh again");
+    }
+    mesh.elements = simplices.Elements();
+    mesh.notices.push_back(simplices.Notice());
+    cell_of_part_ = simplices.Cells();
+  }
+
+  const std::filesystem::path path_;
+  const GmshElements& elements_;
+  std::vector<Cell> cells_;
+  Numbering numbering_{{}};
+  bool are_cut_ = false;
+  std::vector<std::size_t> cell_of_part_;
+};
+
+/// Appends the facets of these vertices, each in the parts into which it is
+/// cut.
+void AppendCutFacets(const Eigen::MatrixXi& facets, PhysicalGroup& group,
+                     Eigen::Index num_vertices) {
+  for (const auto& facet : facets.colwise()) {
+    for (const std::vector<int>& part :
+         CutFace(std::vector<int>(facet.begin(), facet.end()))) {
+      group.facets.conservativeResize(num_vertices, group.facets.cols() + 1);
+      std::copy(part.begin(), part.end(), group.facets.rightCols<1>().begin());
+    }
+  }
 }
 
-void AddEntity(const Numbering& nodes, int entity, int facet_type,
+void AddEntity(const Numbering& nodes, int entity, bool are_cut,
                const MeshFile& mesh, PhysicalGroup& group) {
   const GmshElements elements(group.dimension, entity);
+  const int facet_type =
+      std::find_if(kGmshKinds.begin(), kGmshKinds.end(),
+                   [&](const GmshKind& one) { return one.kind == mesh.kind; })
+          ->facet_type;
   const Eigen::Index num_nodes = mesh.Topology().NumNodesOfFace();
   const Eigen::Index num_vertices = mesh.Topology().NumVerticesOfFace();
   for (std::size_t i = 0; i < elements.types.size(); ++i) {
     std::vector<int> positions;
     positions.reserve(elements.nodes[i].size());
     for (const std::size_t number : elements.nodes[i]) {
-      positions.push_back(NodePosition(mesh, nodes, number));
+      positions.push_back(NodePosition(mesh.path, nodes, number));
     }
     group.nodes.insert(group.nodes.end(), positions.begin(), positions.end());
-    if (elements.types[i] == facet_type) {
+    const CellShape* const shape = FindGmshShape(elements.types[i]);
+    const Eigen::Index count = Eigen::Index(elements.numbers[i].size());
+    if (are_cut && shape != nullptr && group.dimension == 2 &&
+        mesh.Dimension() == 3) {
+      AppendCutFacets(Eigen::Map<const Eigen::MatrixXi>(
+                          positions.data(), shape->num_vertices, count),
+                      group, num_vertices);
+    } else if (elements.types[i] == facet_type) {
       const Eigen::Index before = group.facets.cols();
-      const Eigen::Index count = elements.numbers[i].size();
       group.facets.conservativeResize(num_vertices, before + count);
       group.facets.rightCols(count) =
           Eigen::Map<const Eigen::MatrixXi>(positions.data(), num_nodes, count)
@@ -263,8 +392,7 @@ void AddEntity(const Numbering& nodes, int entity, int facet_type,
   }
 }
 
-void ReadPhysicalGroups(const Numbering& nodes, int facet_type,
-                        MeshFile& mesh) {
+void ReadPhysicalGroups(const Numbering& nodes, bool are_cut, MeshFile& mesh) {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups);
   for (const auto& [dimension, number] : groups) {
@@ -275,7 +403,7 @@ void ReadPhysicalGroups(const Numbering& nodes, int facet_type,
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
     for (const int entity : entities) {
-      AddEntity(nodes, entity, facet_type, mesh, group);
+      AddEntity(nodes, entity, are_cut, mesh, group);
     }
     std::sort(group.nodes.begin(), group.nodes.end());
     group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()),
@@ -397,7 +525,8 @@ void ReadRegions(const Numbering& elements, MeshFile& mesh) {
   if (groups.empty() || FindArray(mesh.element_arrays, "region") != nullptr) {
     return;
   }
-  Eigen::MatrixXd regions = Eigen::MatrixXd::Zero(1, mesh.elements.cols());
+  Eigen::MatrixXd regions =
+      Eigen::MatrixXd::Zero(1, Eigen::Index(elements.Numbers().size()));
   for (const auto& [dimension, number] : groups) {
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
@@ -423,20 +552,21 @@ MeshFile ReadByGmsh(const std::filesystem::path& link,
     const FileCounts counts = Merge(link, path);
     const int dimension = GmshElements(3).types.empty() ? 2 : 3;
     const GmshElements gmsh_elements(dimension);
-    const GmshKind* const kind = FindKind(path, gmsh_elements);
+    GmshCells cells(path, gmsh_elements);
     CheckNoElementIsLost(path, counts.elements);
     const Numbering nodes = ReadNodes(mesh);
     mesh.num_nodes_left_out =
         std::max<Eigen::Index>(counts.nodes - mesh.nodes.cols(), 0);
-    if (kind == nullptr) {
+    if (cells.Empty()) {
       return mesh;
     }
-    mesh.kind = kind->kind;
-    const Numbering elements = ReadElements(gmsh_elements, nodes, mesh);
-    ReadPhysicalGroups(nodes, kind->facet_type, mesh);
-    ReadViews(nodes, elements, mesh);
-    ReadRegions(elements, mesh);
-    mesh.has_other_cells = NumElementsOfAnyDimension() > mesh.elements.cols();
+    cells.EnterElements(nodes, mesh);
+    ReadPhysicalGroups(nodes, cells.AreCut(), mesh);
+    ReadViews(nodes, cells.Numbers(), mesh);
+    ReadRegions(cells.Numbers(), mesh);
+    cells.SpreadOverParts(mesh.element_arrays);
+    mesh.has_other_cells = NumElementsOfAnyDimension() >
+                           Eigen::Index(cells.Numbers().Numbers().size());
   } catch (const std::string& message) {
     ThrowSaidByGmsh(link, path, message);  // Gmsh throws strings.
   } catch (const std::bad_alloc&) {

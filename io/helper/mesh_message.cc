@@ -37,6 +37,12 @@ class Writer {
     Number(static_cast<std::int64_t>(text.size()));
     Mark(text);
   }
+  void Texts(const std::vector<std::string>& texts) {
+    Number(static_cast<std::int64_t>(texts.size()));
+    for (const std::string& text : texts) {
+      Text(text);
+    }
+  }
   template <typename Matrix>
   void Entries(const Matrix& matrix) {
     Number(matrix.rows());
@@ -188,6 +194,10 @@ void ReadMesh(Reader& reader, MeshFile& mesh) {
                   mesh.node_numbers.size() ==
                       static_cast<std::size_t>(mesh.nodes.cols())) &&
                  mesh.num_nodes_left_out >= 0);
+  mesh.notices.resize(reader.Count(1));
+  for (std::string& notice : mesh.notices) {
+    notice = reader.Text();
+  }
 }
 
 }  // namespace
@@ -228,6 +238,7 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh) {
   writer.Number(mesh.is_vtk ? 1 : 0);
   writer.Values(mesh.node_numbers);
   writer.Number(mesh.num_nodes_left_out);
+  writer.Texts(mesh.notices);
   writer.Mark(kEnd);
 }
 

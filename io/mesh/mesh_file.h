@@ -100,8 +100,8 @@ struct MeshFile {
 
 /// Lists what the elements of a scene may be, for error messages.
 inline constexpr char kSupportedElements[] =
-    "tetrahedra and triangles, linear or quadratic, hexahedra of 8 or 27 nodes "
-    "and quadrilaterals of 4 or 9";
+    "tetrahedra and triangles, linear or quadratic, hexahedra of 8 or 27 "
+    "nodes, quadrilaterals of 4 or 9, wedges of 6 and pyramids of 5";
 
 /// Lists the extensions of mesh files, for messages.
 inline constexpr char kMeshExtensions[] =

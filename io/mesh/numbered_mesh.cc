@@ -7,6 +7,7 @@
 
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/io/mesh/numbering.h"
+#include "elastimate/io/mesh/quadratic_simplices.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -66,30 +67,21 @@ class Conversion {
     for (const NumberedElement& element : from_.elements) {
       dimension_ = std::max(dimension_, TypeOf(element).dimension);
     }
-    const NumberedElement* first = nullptr;
     for (const NumberedElement& element : from_.elements) {
-      const NumberedType& type = TypeOf(element);
-      if (type.dimension != dimension_ || dimension_ < 2) {
-        continue;
+      if (TypeOf(element).dimension == dimension_ && dimension_ >= 2) {
+        chosen_.push_back(&element);
       }
-      const std::string is_of = "element " + std::to_string(element.number) +
-                                " is of type " + Printable(type.name);
-      if (!type.kind) {
-        ThrowInputError(mesh_.path, is_of + ", " + type.mend);
-      }
-      if (first != nullptr && type.kind != TypeOf(*first).kind) {
-        ThrowInputError(mesh_.path,
-                        is_of + ", but others are of type " +
-                            Printable(TypeOf(*first).name) +
-                            "; mesh the specimen with one kind of element");
-      }
-      first = first == nullptr ? &element : first;
-      chosen_.push_back(&element);
-    }
-    if (first != nullptr) {
-      mesh_.kind = *TypeOf(*first).kind;
     }
     mesh_.has_other_cells = chosen_.size() != from_.elements.size();
+    are_cut_ = AreToBeCut();
+    if (are_cut_) {
+      mesh_.kind = dimension_ == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
+      if (TypeOf(*chosen_[0]).Order() == 2) {
+        mesh_.kind = QuadraticKind(mesh_.kind);
+      }
+    } else if (!chosen_.empty()) {
+      mesh_.kind = TheOneKind();
+    }
   }
 
   void CopyElements() {
@@ -100,15 +92,24 @@ class Conversion {
     const std::vector<std::size_t> order = SortingOrder(numbers);
     std::sort(numbers.begin(), numbers.end());
     CheckDiffer("element", numbers);
+    elements_ = Numbering(std::move(numbers));
+    for (const std::size_t k : order) {
+      cells_.push_back(chosen_[k]);
+    }
+    if (are_cut_) {
+      CutElements();
+      return;
+    }
     const std::size_t num_nodes = mesh_.Topology().num_nodes;
     mesh_.elements.resize(static_cast<Eigen::Index>(num_nodes),
-                          static_cast<Eigen::Index>(order.size()));
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::vector<int> nodes = NodesOf(*chosen_[order[k]], num_nodes);
+                          static_cast<Eigen::Index>(cells_.size()));
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+      const std::vector<int> nodes = NodesOf(*cells_[k], num_nodes);
       std::copy(nodes.begin(), nodes.end(),
                 mesh_.elements.col(static_cast<Eigen::Index>(k)).begin());
+      first_part_.push_back(static_cast<Eigen::Index>(k));
     }
-    elements_ = Numbering(std::move(numbers));
+    first_part_.push_back(mesh_.elements.cols());
   }
 
   void IndexOtherElements() {
@@ -146,6 +147,9 @@ class Conversion {
       std::sort(group.nodes.begin(), group.nodes.end());
       group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()),
                         group.nodes.end());
+      if (set.members == Members::kNodes) {
+        AddNodesBetween(group.nodes);
+      }
       mesh_.groups.push_back(std::move(group));
     }
   }
@@ -161,16 +165,18 @@ class Conversion {
         if (place < 0) {
           continue;
         }
-        double& region = regions(place);
+        auto parts = regions.middleCols(
+            first_part_[place], first_part_[place + 1] - first_part_[place]);
+        const double region = parts(0);
         if (region != 0 && region != number && mesh_.why_no_regions.empty()) {
           mesh_.why_no_regions =
-              mesh_.Shape() + " " + std::to_string(place) +
+              mesh_.Shape() + " " + std::to_string(first_part_[place]) +
               " is in the sets \"" +
               Printable(mesh_.groups[sets[static_cast<std::size_t>(region) - 1]]
                             .name) +
               "\" and \"" + Printable(mesh_.groups[i].name) + "\"";
         }
-        region = number;
+        parts.setConstant(number);
       }
     }
     mesh_.are_regions_groups = number > 0 && mesh_.why_no_regions.empty();
@@ -199,6 +205,114 @@ class Conversion {
  private:
   const NumberedType& TypeOf(const NumberedElement& element) const {
     return from_.types[element.type];
+  }
+
+  /// Tells whether all elements may be cut, and are not of one kind otherwise.
+  bool AreToBeCut() const {
+    const auto has_cell = [this](const NumberedElement* element) {
+      return TypeOf(*element).Cell() != nullptr &&
+             TypeOf(*element).Order() == TypeOf(*chosen_[0]).Order();
+    };
+    const auto is_another = [this](const NumberedElement* element) {
+      return !TypeOf(*element).kind ||
+             TypeOf(*element).kind != TypeOf(*chosen_[0]).kind;
+    };
+    return std::all_of(chosen_.begin(), chosen_.end(), has_cell) &&
+           std::any_of(chosen_.begin(), chosen_.end(), is_another);
+  }
+
+  ElementKind TheOneKind() const {
+    const NumberedType& first = TypeOf(*chosen_[0]);
+    for (const NumberedElement* element : chosen_) {
+      const NumberedType& type = TypeOf(*element);
+      const std::string is_of = "element " + std::to_string(element->number) +
+                                " is of type " + Printable(type.name);
+      if (!type.kind && !type.mend.empty()) {
+        ThrowInputError(mesh_.path, is_of + ", " + type.mend);
+      }
+      if (!type.kind || type.kind != first.kind) {
+        ThrowInputError(mesh_.path,
+                        is_of + ", but others are of type " +
+                            Printable(first.name) +
+                            "; mesh the specimen with one kind of element, or "
+                            "with elements of one order");
+      }
+    }
+    return *first.kind;
+  }
+
+  void CutElements() {
+    Simplices simplices(dimension_);
+    for (const NumberedElement* element : cells_) {
+      first_part_.push_back(Eigen::Index(simplices.Cells().size()));
+      const CellShape& shape = *TypeOf(*element).Cell();
+      simplices.Add(shape, NodesOf(*element, shape.num_vertices));
+    }
+    first_part_.push_back(Eigen::Index(simplices.Cells().size()));
+    if (const auto folded = simplices.FirstFolded(mesh_.nodes)) {
+      const NumberedElement& element = *cells_[*folded];
+      ThrowInputError(mesh_.path, "element " + std::to_string(element.number) +
+                                      " of type " +
+                                      Printable(TypeOf(element).name) +
+                                      " is folded or flat; correct the order "
+                                      "of its nodes, or mesh again");
+    }
+    mesh_.elements = simplices.Elements();
+    std::string notice = simplices.Notice();
+    if (mesh_.Topology().order == 2) {
+      AddMiddles(simplices.Cells());
+      notice += " and " + Counted(added_.size(), "node") +
+                " more, in the middle of new edges, which no measurement has";
+    }
+    mesh_.notices.push_back(notice);
+  }
+
+  void AddMiddles(const std::vector<std::size_t>& cell_of_part) {
+    std::vector<QuadraticCell> cells;
+    for (const NumberedElement* element : cells_) {
+      cells.push_back(
+          {TypeOf(*element).Cell(), NodesOf(*element, element->num_nodes)});
+    }
+    added_ = AddMiddleNodes(cells, cell_of_part, mesh_.nodes, mesh_.elements);
+    Eigen::Index column = mesh_.nodes.cols();
+    mesh_.nodes.conservativeResize(Eigen::NoChange,
+                                   column + Eigen::Index(added_.size()));
+    for (const AddedNode& node : added_) {
+      mesh_.nodes.col(column++) = node.position;
+      mesh_.node_numbers.push_back(mesh_.node_numbers.back() + 1);
+    }
+  }
+
+  /// Adds those added nodes that have all nodes around them among `nodes`,
+  /// which ascend.
+  void AddNodesBetween(std::vector<int>& nodes) const {
+    const std::vector<int> before = nodes;
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+      const std::vector<int>& around = added_[i].around;
+      if (std::all_of(around.begin(), around.end(), [&](int node) {
+            return std::binary_search(before.begin(), before.end(), node);
+          })) {
+        nodes.push_back(static_cast<int>(from_.positions.size() + i));
+      }
+    }
+  }
+
+  /// Returns the nodes of the parts of a cell.
+  std::vector<int> NodesOfParts(int place) const {
+    const Eigen::MatrixXi nodes = mesh_.elements.middleCols(
+        first_part_[place], first_part_[place + 1] - first_part_[place]);
+    return {nodes.data(), nodes.data() + nodes.size()};
+  }
+
+  /// Appends a face of a cell, in the triangles that it was cut into.
+  void AppendFacets(const std::vector<int>& face,
+                    std::vector<std::vector<int>>& facets) const {
+    if (!are_cut_) {
+      facets.push_back(face);
+      return;
+    }
+    const std::vector<std::vector<int>> parts = CutFace(face);
+    facets.insert(facets.end(), parts.begin(), parts.end());
   }
 
   [[noreturn]] void ThrowTwice(const std::string& what,
@@ -269,8 +383,9 @@ class Conversion {
       for (const std::size_t number : numbers) {
         facet.push_back(PlaceOfNode(number, of));
       }
-      if (int(facet.size()) == mesh_.Topology().NumVerticesOfFace()) {
-        facets.push_back(std::move(facet));
+      if (are_cut_ ||
+          int(facet.size()) == mesh_.Topology().NumVerticesOfFace()) {
+        AppendFacets(facet, facets);
       }
     }
     AddFacets(facets, group);
@@ -280,7 +395,7 @@ class Conversion {
                   PhysicalGroup& group,
                   std::vector<std::vector<int>>& facets) const {
     if (const int place = elements_.Find(number); place >= 0) {
-      const auto nodes = mesh_.elements.col(place);
+      const std::vector<int> nodes = NodesOfParts(place);
       group.nodes.insert(group.nodes.end(), nodes.begin(), nodes.end());
       return;
     }
@@ -288,7 +403,7 @@ class Conversion {
     const std::vector<int> nodes = NodesOf(element, element.num_nodes);
     group.nodes.insert(group.nodes.end(), nodes.begin(), nodes.end());
     if (IsFacet(element)) {
-      facets.push_back(VerticesOf(element));
+      AppendFacets(VerticesOf(element), facets);
     }
   }
 
@@ -307,7 +422,8 @@ class Conversion {
   bool IsFacet(const NumberedElement& element) const {
     const NumberedType& type = TypeOf(element);
     return type.dimension == mesh_.Dimension() - 1 &&
-           type.num_vertices == mesh_.Topology().NumVerticesOfFace();
+           (are_cut_ ||
+            type.num_vertices == mesh_.Topology().NumVerticesOfFace());
   }
 
   std::vector<int> VerticesOf(const NumberedElement& element) const {
@@ -320,21 +436,29 @@ class Conversion {
     if (place < 0) {
       const NumberedElement& element = Other(face.element, of);
       if (IsFacet(element)) {
-        facets.push_back(VerticesOf(element));
+        AppendFacets(VerticesOf(element), facets);
       }
       return;
     }
     if (!face.vertices.empty()) {
-      const Eigen::VectorXi nodes = mesh_.elements(face.vertices, place);
-      facets.emplace_back(nodes.begin(), nodes.end());
+      const std::vector<int> nodes =
+          NodesOf(*cells_[place], cells_[place]->num_nodes);
+      std::vector<int> vertices;
+      for (const int vertex : face.vertices) {
+        vertices.push_back(nodes[vertex]);
+      }
+      AppendFacets(vertices, facets);
       return;
     }
-    for (const std::vector<int>& vertices : mesh_.Topology().faces) {
-      const Eigen::VectorXi nodes = mesh_.elements(vertices, place);
-      const auto [first, last] = std::equal_range(
-          Faces().begin(), Faces().end(), OwnedFace{Sorted(nodes), 0, 0});
-      if (last - first == 1) {
-        facets.emplace_back(nodes.begin(), nodes.end());
+    for (Eigen::Index part = first_part_[place]; part < first_part_[place + 1];
+         ++part) {
+      for (const std::vector<int>& vertices : mesh_.Topology().faces) {
+        const Eigen::VectorXi nodes = mesh_.elements(vertices, part);
+        const auto [first, last] = std::equal_range(
+            Faces().begin(), Faces().end(), OwnedFace{Sorted(nodes), 0, 0});
+        if (last - first == 1) {
+          facets.emplace_back(nodes.begin(), nodes.end());
+        }
       }
     }
   }
@@ -413,7 +537,7 @@ class Conversion {
   }
 
   bool HasAllElements(const NumberedSet& set) const {
-    std::vector<char> is_member(mesh_.elements.cols(), 0);
+    std::vector<char> is_member(cells_.size(), 0);
     for (const std::size_t number : set.numbers) {
       if (const int place = elements_.Find(number); place >= 0) {
         is_member[place] = 1;
@@ -426,6 +550,12 @@ class Conversion {
   MeshFile mesh_;
   int dimension_ = 0;
   std::vector<const NumberedElement*> chosen_;
+  bool are_cut_ = false;
+  /// The elements of the file that make up the mesh, by ascending numbers.
+  std::vector<const NumberedElement*> cells_;
+  /// The first element of the mesh that is a part of each cell, and the end.
+  std::vector<Eigen::Index> first_part_;
+  std::vector<AddedNode> added_;  ///< Behind the nodes of the file.
   std::vector<const NumberedElement*> others_;  ///< By ascending numbers.
   Numbering nodes_{{}};
   Numbering elements_{{}};
@@ -434,6 +564,25 @@ class Conversion {
 };
 
 }  // namespace
+
+const CellShape* NumberedType::Cell() const {
+  const bool is_cut = kind ? Order() == 1 || IsSimplex(*kind) : mend.empty();
+  return is_cut ? FindCellShape(dimension, num_vertices) : nullptr;
+}
+
+int NumberedType::Order() const {
+  return kind ? TopologyOf(*kind).order : has_middles ? 2 : 1;
+}
+
+int NumberedType::NumNodes() const {
+  if (kind) {
+    return TopologyOf(*kind).num_nodes;
+  }
+  const CellShape* const cell = Cell();
+  return cell == nullptr
+             ? 0
+             : cell->num_vertices + (has_middles ? int(cell->edges.size()) : 0);
+}
 
 MeshFile ToMeshFile(const std::filesystem::path& path,
                     const NumberedMesh& numbered) {

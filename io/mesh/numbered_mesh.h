@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/mesh/simplices.h"
 
 namespace elastimate {
 
@@ -16,12 +17,23 @@ namespace elastimate {
 struct NumberedType {
   std::string name;
   int dimension = 0;
-  /// None where it is not for scenes.
+  /// None where it is not for scenes, and for cells that are cut.
   std::optional<ElementKind> kind;
-  /// The number of vertices, which come first, of what may be a facet.
+  /// The number of vertices, which come first, of what may be a facet or cut.
   int num_vertices = 0;
   /// "which has ...; convert it by ...", for a type that is not for scenes.
   std::string mend;
+  /// Whether it has a node in the middle of each edge; not read where `kind`
+  /// is given.
+  bool has_middles = false;
+
+  /// Returns the shape of what may be cut into simplices; null where it may
+  /// not.
+  const CellShape* Cell() const;
+  /// Returns 1 or 2, for what may be cut.
+  int Order() const;
+  /// Returns the number of nodes of an element; zero where it is not known.
+  int NumNodes() const;
 };
 
 struct NumberedElement {
@@ -75,10 +87,17 @@ struct NumberedMesh {
 /// elements, if there are others.  Where two of them share an element there are
 /// none (MeshFile::why_no_regions).
 ///
+/// Where the elements are not of one kind, or are pyramids or wedges, all are
+/// cut into simplices (Simplices) if their nodes are their vertices, or their
+/// vertices and the middles of their edges.  In the latter case nodes are added
+/// (AddMiddleNodes), which have numbers behind the others, and which are in the
+/// sets of nodes that have all nodes around them.
+///
 /// Throws std::invalid_argument, naming the file and the element or the node,
-/// for elements that are not of one ElementKind, for numbers that come twice,
-/// and for nodes and elements that the file does not have.
-/// O((num_nodes + num_elements) log num_elements).
+/// for elements that are neither of one ElementKind nor cut, for those that
+/// fold onto themselves when they are cut, for numbers that come twice, and for
+/// nodes and elements that the file does not have. O((num_nodes + num_elements)
+/// log num_elements).
 MeshFile ToMeshFile(const std::filesystem::path& path,
                     const NumberedMesh& numbered);
 

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/large_pages.h"
+#include "elastimate/io/mesh/simplices.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -165,12 +166,6 @@ void CheckOffsets(const std::filesystem::path& path, const VtkGrid& grid) {
   }
 }
 
-/// The cells that are the elements: those of the highest dimension.
-struct ElementCells {
-  ElementKind kind = ElementKind::kTet4;
-  std::vector<std::size_t> cells;
-};
-
 /// Returns the cells of dimension 3 where there are any, else those of
 /// dimension 2.
 std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
@@ -192,63 +187,132 @@ std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
   return cells;
 }
 
-/// Returns the cells that are elements, which must be of one kind.
-ElementCells FindElements(const std::filesystem::path& path,
-                          const VtkGrid& grid) {
-  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
-  ElementCells elements;
-  elements.cells = CellsOfHighestDimension(grid);
-  for (const std::size_t cell : elements.cells) {
-    const int type = grid.cell_types[cell];
-    const int first_type = grid.cell_types[elements.cells.front()];
-    const std::optional<ElementKind> kind = KindOfCell(type);
-    const auto name = [&] {
-      return "cell " + std::to_string(cell) + " is a " + CellTypeName(type);
-    };
-    if (!kind) {
-      ThrowInputError(path, name() + ", but the cells of a scene are " +
-                                kSupportedElements +
-                                "; mesh the specimen with one kind of these");
-    }
-    if (type != first_type) {
-      ThrowInputError(path, name() + ", but cell " +
-                                std::to_string(elements.cells.front()) +
-                                " is a " + CellTypeName(first_type) +
-                                "; mesh the specimen with cells of one kind");
-    }
-    elements.kind = *kind;
-    const auto index = static_cast<vtkIdType>(cell);
-    const vtkIdType count =
-        offsets.GetValue(index + 1) - offsets.GetValue(index);
-    if (const int due = TopologyOf(*kind).num_nodes; count != due) {
-      ThrowInconsistent(path, name() + " of " + std::to_string(count) +
-                                  " points where " + std::to_string(due) +
-                                  " are due");
-    }
+/// Returns the shape of a cell whose points are its vertices, in the order of
+/// CellShape; null for others.
+const CellShape* ShapeOfCell(int type) {
+  switch (type) {
+    case VTK_TRIANGLE:
+      return FindCellShape(2, 3);
+    case VTK_QUAD:
+      return FindCellShape(2, 4);
+    case VTK_TETRA:
+      return FindCellShape(3, 4);
+    case VTK_PYRAMID:
+      return FindCellShape(3, 5);
+    case VTK_WEDGE:
+      return FindCellShape(3, 6);
+    case VTK_HEXAHEDRON:
+      return FindCellShape(3, 8);
+    default:
+      return nullptr;
   }
-  return elements;
 }
 
-void CopyElements(const VtkGrid& grid, const std::vector<std::size_t>& cells,
-                  MeshFile& mesh) {
+/// Tells whether all cells may be cut into simplices, and are not of one kind
+/// otherwise.
+bool AreToBeCut(const VtkGrid& grid, const std::vector<std::size_t>& cells) {
+  const auto type = [&](std::size_t cell) { return grid.cell_types[cell]; };
+  return std::all_of(cells.begin(), cells.end(),
+                     [&](std::size_t cell) {
+                       return ShapeOfCell(type(cell)) != nullptr;
+                     }) &&
+         std::any_of(cells.begin(), cells.end(), [&](std::size_t cell) {
+           return !KindOfCell(type(cell)) || type(cell) != type(cells[0]);
+         });
+}
+
+/// "cell 7 is a wedge".
+std::string CellName(const VtkGrid& grid, std::size_t cell) {
+  return "cell " + std::to_string(cell) + " is a " +
+         CellTypeName(grid.cell_types[cell]);
+}
+
+/// Returns the kind of elements that the cells are, which must be one.
+ElementKind TheOneKind(const std::filesystem::path& path, const VtkGrid& grid,
+                       const std::vector<std::size_t>& cells) {
+  const int first_type = grid.cell_types[cells.front()];
+  for (const std::size_t cell : cells) {
+    const int type = grid.cell_types[cell];
+    if (!KindOfCell(type) && ShapeOfCell(type) == nullptr) {
+      ThrowInputError(
+          path, CellName(grid, cell) + ", but the cells of a scene are " +
+                    kSupportedElements + "; mesh the specimen with these");
+    }
+    if (type != first_type) {
+      ThrowInputError(path, CellName(grid, cell) + ", but " +
+                                CellName(grid, cells.front()) +
+                                "; mesh the specimen with cells of one kind, "
+                                "or with linear ones");
+    }
+  }
+  return *KindOfCell(first_type);
+}
+
+/// Returns the points of a cell, of which `due` are due.
+std::vector<int> PointsOfCell(const std::filesystem::path& path,
+                              const VtkGrid& grid, std::size_t cell, int due) {
   const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
   const vtkTypeInt64Array& connectivity = *grid.cells->GetConnectivityArray64();
-  const std::int64_t num_points = grid.points.cols();
-  mesh.elements.resize(mesh.Topology().num_nodes, cells.size());
+  const auto index = static_cast<vtkIdType>(cell);
+  const vtkIdType first = offsets.GetValue(index);
+  const vtkIdType count = offsets.GetValue(index + 1) - first;
+  if (count != due) {
+    ThrowInconsistent(path, CellName(grid, cell) + " of " +
+                                std::to_string(count) + " points where " +
+                                std::to_string(due) + " are due");
+  }
+  std::vector<int> points;
+  for (vtkIdType i = 0; i < count; ++i) {
+    const std::int64_t point = connectivity.GetValue(first + i);
+    if (point < 0 || point >= grid.points.cols()) {
+      ThrowInputError(path,
+                      "cell " + std::to_string(cell) + " names point " +
+                          std::to_string(point) + ", but the file has " +
+                          std::to_string(grid.points.cols()) +
+                          " points, counted from 0; correct its connectivity");
+    }
+    points.push_back(static_cast<int>(point));
+  }
+  return points;
+}
+
+/// Makes the cells the elements of the mesh, and returns the cell of each.
+std::vector<std::size_t> CutElements(const VtkGrid& grid,
+                                     const std::vector<std::size_t>& cells,
+                                     MeshFile& mesh) {
+  const int dimension = ShapeOfCell(grid.cell_types[cells.front()])->dimension;
+  mesh.kind = dimension == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
+  Simplices simplices(dimension);
+  for (const std::size_t cell : cells) {
+    const CellShape& shape = *ShapeOfCell(grid.cell_types[cell]);
+    simplices.Add(shape,
+                  PointsOfCell(mesh.path, grid, cell, shape.num_vertices));
+  }
+  if (const auto folded = simplices.FirstFolded(grid.points)) {
+    ThrowInputError(mesh.path, CellName(grid, cells[*folded]) +
+                                   " that is folded or flat; order its points "
+                                   "as VTK does, or mesh again");
+  }
+  mesh.elements = simplices.Elements();
+  mesh.notices.push_back(simplices.Notice());
+  std::vector<std::size_t> cell_of_element;
+  for (const std::size_t i : simplices.Cells()) {
+    cell_of_element.push_back(cells[i]);
+  }
+  return cell_of_element;
+}
+
+/// Makes the cells, of one kind, the elements of the mesh.
+void CopyElements(const VtkGrid& grid, const std::vector<std::size_t>& cells,
+                  MeshFile& mesh) {
+  mesh.kind = TheOneKind(mesh.path, grid, cells);
+  const int num_nodes = mesh.Topology().num_nodes;
+  mesh.elements.resize(num_nodes, static_cast<Eigen::Index>(cells.size()));
   Eigen::Index column = 0;
   for (const std::size_t cell : cells) {
-    const std::int64_t first = offsets.GetValue(static_cast<vtkIdType>(cell));
-    for (Eigen::Index i = 0; i < mesh.elements.rows(); ++i) {
-      const std::int64_t node = connectivity.GetValue(first + i);
-      if (node < 0 || node >= num_points) {
-        ThrowInputError(
-            mesh.path, "cell " + std::to_string(cell) + " names point " +
-                           std::to_string(node) + ", but the file has " +
-                           std::to_string(num_points) +
-                           " points, counted from 0; correct its connectivity");
-      }
-      mesh.elements(i, column) = static_cast<int>(node);
-    }
+    const std::vector<int> points =
+        PointsOfCell(mesh.path, grid, cell, num_nodes);
+    std::copy(points.begin(), points.end(), mesh.elements.col(column).begin());
     ++column;
   }
 }
@@ -290,19 +354,23 @@ MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
     return mesh;
   }
   CheckOffsets(path, grid);
-  const ElementCells elements = FindElements(path, grid);
-  mesh.kind = elements.kind;
-  CopyElements(grid, elements.cells, mesh);
+  std::vector<std::size_t> cells = CellsOfHighestDimension(grid);
+  mesh.has_other_cells = cells.size() != grid.cell_types.size();
+  const bool are_cut = AreToBeCut(grid, cells);
+  if (are_cut) {
+    cells = CutElements(grid, cells, mesh);
+  } else if (!cells.empty()) {
+    CopyElements(grid, cells, mesh);
+  }
   CheckArrayLengths(path, grid.point_arrays, grid.points.cols());
   CheckArrayLengths(path, grid.cell_arrays,
                     static_cast<Eigen::Index>(grid.cell_types.size()));
   mesh.nodes = std::move(grid.points);
   mesh.node_arrays = std::move(grid.point_arrays);
   mesh.element_arrays = std::move(grid.cell_arrays);
-  mesh.has_other_cells = elements.cells.size() != grid.cell_types.size();
-  if (mesh.has_other_cells) {
+  if (mesh.has_other_cells || are_cut) {
     for (FileArray& array : mesh.element_arrays) {
-      array.values = Eigen::MatrixXd(array.values(Eigen::all, elements.cells));
+      array.values = Eigen::MatrixXd(array.values(Eigen::all, cells));
     }
   }
   return mesh;

@@ -61,7 +61,8 @@ def one_kind(
         if len(cells) != 1:
             raise ValueError(
                 f"the mesh has elements of {len(cells)} kinds ({', '.join(cells)}); "
-                "give elements of one kind"
+                "give elements of one kind, or save the mesh as a .vtu file, whose linear elements "
+                "elastimate.read cuts into simplices"
             )
         (kind, cells) = next(iter(cells.items()))
     connectivity = np.asarray(cells)

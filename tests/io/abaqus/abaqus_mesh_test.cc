@@ -280,15 +280,19 @@ TEST_F(AbaqusMeshTest, ReadsWhatGmshWrites) {
 
 TEST_F(AbaqusMeshTest, RefusesWhatIsNotForScenes) {
   const std::string text = TwoFlatTetrahedra();
-  EXPECT_THAT(WhyNot("*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,1,0,1\n"
-                     "6,0,1,1\n*ELEMENT, TYPE=C3D6\n7, 1,2,3,4,5,6\n"),
-              HasSubstr("element 7 is of type C3D6, but the elements of a "
+  EXPECT_THAT(WhyNot(Replaced(text, "*NSET",
+                              "*ELEMENT, TYPE=C3D27\n7, 1,2,3,4\n*NSET")),
+              HasSubstr("element 7 is of type C3D27, but the elements of a "
                         "scene are"));
   EXPECT_THAT(
       WhyNot(Replaced(text, "*NSET",
-                      "*ELEMENT, TYPE=C3D8\n"
-                      "9, 1, 2, 3, 4, 5, 1, 2, 3\n*NSET")),
-      HasSubstr("element 9 is of type C3D8, but others are of type C3D4"));
+                      "*ELEMENT, TYPE=C3D10\n"
+                      "9, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5\n*NSET")),
+      HasSubstr("element 9 is of type C3D10, but others are of type C3D4"));
+  EXPECT_THAT(WhyNot(Replaced(text, "*NSET",
+                              "*ELEMENT, TYPE=C3D8\n"
+                              "9, 1, 2, 3, 4, 5, 1, 2, 3\n*NSET")),
+              HasSubstr("element 9 of type C3D8 is folded or flat"));
   EXPECT_THAT(WhyNot("*NODE\n1, 0, 0\n*ELEMENT, TYPE=CAX4\n1, 1, 1, 1, 1\n"),
               HasSubstr("axisymmetric"));
   EXPECT_THAT(WhyNot(text + "*NGEN\n1, 5\n"), HasSubstr("*NGEN is not read"));

@@ -82,7 +82,9 @@ TEST_F(FebioMeshTest, NamesWhatIsWrong) {
   EXPECT_THAT(WhyNot(Replaced(text, "10,2,3,5<", "10,2,3,6<")),
               HasSubstr("element 11 names node 6"));
   EXPECT_THAT(WhyNot(Replaced(text, "\"tet4\"", "\"penta6\"")),
-              HasSubstr("element 11 is of type penta6"));
+              HasSubstr("has element 11 of type penta6 with 4 nodes where 6"));
+  EXPECT_THAT(WhyNot(Replaced(text, "\"tet4\"", "\"hex27\"")),
+              HasSubstr("element 11 is of type hex27"));
   EXPECT_THAT(WhyNot(Replaced(text, "id=\"22\"", "id=\"11\"")),
               HasSubstr("it has the element number 11 twice"));
 }

@@ -224,16 +224,46 @@ INSTANTIATE_TEST_SUITE_P(All, CurvedByGmsh, ::testing::Values(2, 3),
                            return std::to_string(info.param) + "d";
                          });
 
-TEST(GmshMixture, IsRefused) {
+constexpr char kGmshPlate[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+    "$PhysicalNames\n3\n1 7 \"right\"\n2 3 \"soft\"\n2 4 \"stiff\"\n"
+    "$EndPhysicalNames\n"
+    "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n$EndNodes\n"
+    "$Elements\n3\n1 1 2 7 1 5 3\n2 3 2 3 1 1 2 3 4\n3 2 2 4 2 2 5 3\n"
+    "$EndElements\n";
+
+TEST(GmshMixture, OfLinearElementsIsCut) {
+  const TemporaryFolder folder;
+  const MeshFile mesh = ReadMeshFile(folder.Write("mesh.msh", kGmshPlate));
+  EXPECT_EQ(mesh.kind, ElementKind::kTri3);
+  EXPECT_EQ(*FindArray(mesh.element_arrays, "region"),
+            Eigen::RowVector3d(3, 3, 4));
+  ASSERT_EQ(mesh.groups[0].name, "right");
+  EXPECT_EQ(mesh.groups[0].facets, Eigen::Vector2i(4, 2));
+  ASSERT_EQ(mesh.notices.size(), 1U);
+}
+
+TEST(GmshMixture, OfPyramidsHasItsSidesCut) {
+  const TemporaryFolder folder;
+  const MeshFile mesh = ReadMeshFile(folder.Write(
+      "mesh.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+      "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n$EndNodes\n"
+      "$Elements\n2\n1 3 2 9 1 1 2 3 4\n2 7 2 8 2 1 2 3 4 5\n"
+      "$EndElements\n"));
+  EXPECT_EQ(mesh.elements.cols(), 2);
+  EXPECT_EQ(mesh.groups[0].facets.cols(), 2);
+}
+
+TEST(GmshMixture, OfOrdersIsRefused) {
   const TemporaryFolder folder;
   EXPECT_THROWS_WITH(
       ReadMeshFile(folder.Write(
           "mesh.msh",
-          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
-          "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n$EndNodes\n"
-          "$Elements\n2\n1 3 2 1 1 1 2 3 4\n2 2 2 1 1 2 5 3\n$EndElements\n")),
-      "mesh.msh: element number . is a .*, but others are of type .*; mesh the "
-      "specimen with one kind of element");
+          Replaced(Replaced(kGmshPlate, "5\n1 0 0 0",
+                            "8\n6 1 1 1\n7 2 2 2\n8 3 3 3\n1 0 0 0"),
+                   "3 2 2 4 2 2 5 3", "3 9 2 4 2 2 5 3 6 7 8"))),
+      "mesh.msh: ");
 }
 
 }  // namespace

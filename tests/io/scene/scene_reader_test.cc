@@ -433,12 +433,16 @@ TEST_F(SceneReaderTest, ErrsOnPointsOutOfRange) {
 
 TEST_F(SceneReaderTest, ErrsOnOtherCells) {
   EXPECT_THROWS_WITH(
-      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 12")),
-      "scene.vtk: cell 3 is a hexahedron, but cell 1 is a tetra; mesh the "
-      "specimen with cells of one kind");
+      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 24")),
+      "scene.vtk: cell 3 is a quadratic tetra, but cell 1 is a tetra; mesh the "
+      "specimen with cells of one kind, or with linear ones");
+  EXPECT_THROWS_WITH(
+      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 26")),
+      "cell 3 is a quadratic wedge, but the cells of a scene are tetrahedra "
+      "and");
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 13")),
-      "cell 3 is a wedge, but the cells of a scene are tetrahedra and");
+      "cell 3 is a wedge of 4 points where 6 are due");
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 24 5 24")),
       "cell 1 is a quadratic tetra of 4 points where 10 are due");
