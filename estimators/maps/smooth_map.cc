@@ -204,4 +204,29 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
   }
 }
 
+double LogEvidenceByModes(const MapProblem& problem, const FieldPrior& other,
+                          const FieldPrior& prior, const SmoothMap& map) {
+  FieldSensitivity& model = problem.model;
+  const Eigen::Index n = prior.NumElements();
+  const FlatUnknowns unknowns(problem, map.state, Eigen::MatrixXd::Ones(n, 1));
+  // Those that count are the accurate ones.
+  const Eigen::Index size =
+      (map.ratio * map.modes.Values().array() >= kLeastOfModes).count();
+  const auto vectors = map.modes.Vectors().leftCols(size);
+  const Eigen::MatrixXd of_other =
+      other.ApplyTransposed(prior.ApplyInverseTransposed(vectors));
+  // S^T Pi S = G G^T.
+  const CurvatureModes modes = CurvatureModes::OfRoot(
+      of_other * map.modes.Values().head(size).cwiseSqrt().asDiagonal());
+  // A^T S^T Pi r = y / k at the map.
+  const FieldEvidence evidence = {
+      problem,
+      modes,
+      unknowns.Project(model.Residual()).squaredNorm(),
+      of_other * (vectors.transpose() * map.y) / map.ratio,
+      other.ApplyInverse(prior.Apply(map.y)),
+      double(model.NumIndependentRows() - unknowns.Rank())};
+  return -evidence.At(std::log(BestRatio(evidence))) / 2;
+}
+
 }  // namespace elastimate

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/maps/local_map.h"
+#include "elastimate/estimators/force_balance/local_map.h"
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseQR>
