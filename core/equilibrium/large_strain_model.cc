@@ -94,12 +94,31 @@ bool LargeStrainModel::SolveMoved(const Eigen::VectorXd& moduli,
 
 bool LargeStrainModel::MoveSupports(const Eigen::MatrixXd& held) {
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
-    equilibrium_.SetHeldDisplacement(
-        k, equilibrium_.HeldDisplacement().col(k) + held.col(k));
-    if (!SolveInCase(k, states_[k].displacement)) {
+    if (!MoveSupportsOfCase(k, held.col(k))) {
       return false;
     }
   }
+  return true;
+}
+
+bool LargeStrainModel::MoveSupportsOfCase(Eigen::Index k,
+                                          const Eigen::VectorXd& held) {
+  constexpr double kShortestStep = 1.0 / 16;
+  const Eigen::VectorXd from = equilibrium_.HeldDisplacement().col(k);
+  double done = 0;
+  double step = 1;
+  while (done < 1) {
+    equilibrium_.SetHeldDisplacement(k, from + (done + step) * held);
+    if (SolveInCase(k, states_[k].displacement)) {
+      done += step;
+    } else {
+      step /= 2;
+    }
+    if (step < kShortestStep) {
+      return false;
+    }
+  }
+  why_not_solved_.clear();
   return true;
 }
 

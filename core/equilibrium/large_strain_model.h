@@ -55,7 +55,8 @@ class LargeStrainModel : public ForwardModel {
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values) override;
   Eigen::MatrixXd ExtendInCase(Eigen::Index k,
                                const Eigen::MatrixXd& held) override;
-  /// Runs Newton's method, whose first iteration is what Extend predicts.
+  /// Runs Newton's method, whose first iteration is what Extend predicts.  If
+  /// that fails, the supports go there in up to 16 shorter steps.
   [[nodiscard]] bool MoveSupports(const Eigen::MatrixXd& held) override;
   /// Begins as Solve does.  The supports move from where they were in the last
   /// equilibrium.
@@ -97,6 +98,7 @@ class LargeStrainModel : public ForwardModel {
   /// Finds the equilibrium of load case `k`, beginning at this start.  If the
   /// start is empty or leads to none, the search begins again at rest.
   bool SolveInCase(Eigen::Index k, const Eigen::VectorXd& start);
+  bool MoveSupportsOfCase(Eigen::Index k, const Eigen::VectorXd& held);
   /// Returns the solver of load case `k`, with the factor of its tangent.
   StiffnessSolver& TangentSolver(Eigen::Index k);
   Eigen::MatrixXd TangentProducts(Eigen::Index k,

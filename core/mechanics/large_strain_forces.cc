@@ -580,6 +580,13 @@ VolumeRatio SmallestRatio(const Mesh& mesh,
 
 }  // namespace
 
+VolumeRatio SmallestVolumeRatio(const Mesh& mesh,
+                                const Eigen::VectorXd& displacement) {
+  return VisitElementKind(mesh.kind, [&](auto kind) {
+    return SmallestRatio<kind>(mesh, displacement);
+  });
+}
+
 LargeStrainForces::LargeStrainForces(const Mesh& mesh,
                                      const std::vector<Material>& materials,
                                      Dilatation dilatation)
@@ -700,13 +707,6 @@ Eigen::MatrixXd LargeStrainForces::TangentProducts(
         AddProducts<kind>(pass, displacement, directions, products);
       });
   return products;
-}
-
-VolumeRatio LargeStrainForces::SmallestVolumeRatio(
-    const Eigen::VectorXd& displacement) const {
-  return VisitElementKind(mesh_.kind, [&](auto kind) {
-    return SmallestRatio<kind>(mesh_, displacement);
-  });
 }
 
 }  // namespace elastimate

@@ -337,6 +337,25 @@ Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
   return (rotation * points).colwise() + motion.head(dimension);
 }
 
+Eigen::VectorXd RigidMotionNearest(const Eigen::MatrixXd& points,
+                                   const Eigen::MatrixXd& change) {
+  // A rotation that moves points on a line by less than this share is one about
+  // the line.
+  constexpr double kNoMotion = 1e-6;
+  const Eigen::Index dimension = points.rows();
+  const Eigen::VectorXd middle = points.rowwise().mean();
+  const Eigen::MatrixXd arms = points.colwise() - middle;
+  const double size = arms.cwiseAbs().maxCoeff();
+  const double unit = size > 0 ? size : 1;
+  Eigen::VectorXd motion = SolveLeastSquares(RigidMotionsOf(arms / unit),
+                                             change.reshaped(), kNoMotion);
+  const Eigen::VectorXd translation = motion.head(dimension);
+  motion /= unit;
+  motion.head(dimension).setZero();
+  motion.head(dimension) = middle + translation - MovedRigidly(middle, motion);
+  return motion;
+}
+
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
   const std::vector<Body> bodies = BodiesOf(mesh);
   std::vector<int> first(mesh.NumNodes(), -1);

@@ -50,6 +50,12 @@ inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
 [[nodiscard]] Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
                                            const Eigen::VectorXd& motion);
 
+/// Returns the motion, as MovedRigidly takes it, that moves points (dimension x
+/// n) by `change` (as large) to first order, or by what is nearest to it in the
+/// sense of least squares.  Points on one line do not turn about it.  O(n).
+[[nodiscard]] Eigen::VectorXd RigidMotionNearest(const Eigen::MatrixXd& points,
+                                                 const Eigen::MatrixXd& change);
+
 /// Tells why the supports do not hold the specimen: the sentence names a motion
 /// without strain which they allow (a translation or a rotation of a part of
 /// the mesh).  It is empty when there is none; only then a finite element

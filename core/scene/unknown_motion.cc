@@ -28,11 +28,9 @@ std::string NodeText(Eigen::Index node, int component) {
   return "node " + std::to_string(node) + " (" + kAxisNames[component] + ")";
 }
 
-// Returns the rigid motions of some nodes, with rotations about their middle,
-// by their size: (dimension num_nodes) x 3 or 6.
-template <class Nodes>
-Eigen::MatrixXd RigidMotionsOfNodes(const Mesh& mesh, const Nodes& nodes) {
-  const Eigen::MatrixXd positions = mesh.nodes(Eigen::all, nodes);
+// Returns the rigid motions of some points, with rotations about their middle,
+// by their size: (dimension num_points) x 3 or 6.
+Eigen::MatrixXd RigidMotionsAbout(const Eigen::MatrixXd& positions) {
   const Eigen::MatrixXd arms = positions.colwise() - positions.rowwise().mean();
   const double size = arms.cwiseAbs().maxCoeff();
   return RigidMotionsOf(arms / (size > 0 ? size : 1));
@@ -268,6 +266,10 @@ ComponentMask AsMeasured(const Supports& supports) {
 }
 
 UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
+    : UnknownMotion(scene, supports, {scene.mesh.nodes, scene.mesh.nodes}) {}
+
+UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports,
+                             const Positions& positions)
     : of_all(scene.mesh.NumDofs(), 0) {
   const Mesh& mesh = scene.mesh;
   const int dimension = mesh.Dimension();
@@ -302,7 +304,9 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
     }
   }
   for (const RigidFace& face : supports.rigid_faces) {
-    Eigen::MatrixXd motions = RigidMotionsOfNodes(mesh, face.nodes);
+    const Eigen::MatrixXd& at =
+        face.components.all() ? positions.of_faces : mesh.nodes;
+    Eigen::MatrixXd motions = RigidMotionsAbout(at(Eigen::all, face.nodes));
     for (Eigen::Index row = 0; row < motions.rows(); ++row) {
       motions.row(row) *= face.components(row % dimension) ? 1 : 0;
     }
@@ -322,8 +326,29 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
   of_supports.resize(mesh.NumDofs(), num_columns);
   of_supports.setFromTriplets(entries.begin(), entries.end());
   if (scene.is_rigid_motion_free) {
-    of_all = OrthonormalBasis(RigidMotionsOfNodes(mesh, Eigen::all), kNoMotion);
+    of_all = OrthonormalBasis(RigidMotionsAbout(positions.of_all), kNoMotion);
   }
+}
+
+Eigen::VectorXd FiniteIncrement(const Mesh& mesh, const Supports& supports,
+                                const Eigen::VectorXd& displacement,
+                                const Eigen::VectorXd& increment) {
+  const auto of_nodes = [&](const Eigen::VectorXd& values) {
+    return values.reshaped(mesh.Dimension(), mesh.NumNodes());
+  };
+  Eigen::MatrixXd finite = of_nodes(increment);
+  for (const RigidFace& face : supports.rigid_faces) {
+    if (face.components.all()) {
+      const Eigen::MatrixXd from =
+          (mesh.nodes + of_nodes(displacement))(Eigen::all, face.nodes);
+      finite(Eigen::all, face.nodes) =
+          MovedRigidly(from,
+                       RigidMotionNearest(
+                           from, of_nodes(increment)(Eigen::all, face.nodes))) -
+          from;
+    }
+  }
+  return finite.reshaped();
 }
 
 Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k) {

@@ -158,12 +158,7 @@ std::string WhyNotTheseKinematics(const Capabilities& capabilities,
            "compared; name laws in the scene or by --material instead of "
            "--kinematics=large";
   }
-  return (are_large_asked_for || has_large_strains) &&
-                 scene.is_rigid_motion_free
-             ? "a free rigid motion cannot be told from the rotations of large "
-               "strains; leave out \"rigid_motion\", and measure relative to "
-               "the supports"
-             : "";
+  return "";
 }
 
 std::string WhyNotTheseMotions(const Capabilities& capabilities,

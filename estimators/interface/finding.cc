@@ -35,6 +35,7 @@ constexpr Row kRows[] = {
     {"outliers", FindingCode::kOutliers},
     {"outliers_left_out", FindingCode::kOutliersLeftOut},
     {"held_nodes_moved", FindingCode::kHeldNodesMoved},
+    {"inverted_elements", FindingCode::kInvertedElements},
     {"resultants_contradicted", FindingCode::kResultantsContradicted},
     {"regions_may_differ", FindingCode::kRegionsMayDiffer},
     {"laws_fit_alike", FindingCode::kLawsFitAlike},

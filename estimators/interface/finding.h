@@ -44,6 +44,7 @@ enum class FindingCode {
   kOutliers,
   kOutliersLeftOut,
   kHeldNodesMoved,
+  kInvertedElements,
   kResultantsContradicted,
   kRegionsMayDiffer,
   kLawsFitAlike,

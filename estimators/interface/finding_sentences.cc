@@ -531,6 +531,18 @@ Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
       "moved as a whole");
 }
 
+Finding InvertedElements(std::size_t load_case, Eigen::Index element,
+                         double volume_ratio) {
+  return Warning(
+      FindingCode::kInvertedElements,
+      "the measured displacements of load case " + std::to_string(load_case) +
+          " turn element " + std::to_string(element) +
+          " inside out (volume ratio " + TwoDigits(volume_ratio) +
+          "), which no specimen does",
+      "look for errors at its nodes; noise alone does it if it is as large as "
+      "elements are");
+}
+
 Finding ResultantsContradicted(double distance) {
   return Warning(FindingCode::kResultantsContradicted,
                  "a measured resultant differs from the force of the fit by " +
@@ -641,13 +653,8 @@ Finding LargeDeformation(const DeformationSize& size,
       " are too large for small-strain elasticity, which leaves E uncertain "
       "by " +
       Percent(relative_error_of_modulus);
-  if (is_rigid_motion_free) {
-    return {FindingCode::kLargeDeformation, severity, text,
-            "measure displacements relative to the supports, leave out "
-            "\"rigid_motion\", and use --estimator=auto --kinematics=large"};
-  }
   return {FindingCode::kLargeDeformation, severity, text,
-          size.rotation > kTurnOfAWhole * size.strain
+          !is_rigid_motion_free && size.rotation > kTurnOfAWhole * size.strain
               ? "give \"rigid_motion\": \"free\" if the specimen or the camera "
                 "turned, or use --estimator=auto --kinematics=large"
               : "use --estimator=auto --kinematics=large, or a law of large "

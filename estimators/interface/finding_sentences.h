@@ -113,6 +113,9 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
                         const Eigen::Vector2d& change,
                         const Estimate& estimate);
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
+/// Names the element that is turned inside out most, with its det F.
+Finding InvertedElements(std::size_t load_case, Eigen::Index element,
+                         double volume_ratio);
 /// In standard deviations, as stated.
 Finding ResultantsContradicted(double distance);
 // What a series of frames shows.

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/mechanics/large_strain_forces.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 
@@ -39,6 +42,35 @@ void AddError(const KinematicError& error, ParameterErrors& of_cause,
     estimate.parameter_covariance(i, i) +=
         std::pow(relative * parameter.ErrorUnit(), 2);
   }
+}
+
+// Returns the smallest det F of the elements all of whose nodes were measured;
+// 1 where there are none.
+VolumeRatio SmallestMeasuredRatio(const Scene& scene, std::size_t k) {
+  const LoadCase& load_case = scene.load_cases[k];
+  if (load_case.displacement.size() == 0) {
+    return {1, 0};
+  }
+  std::vector<Eigen::Index> measured;
+  for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+    bool is_measured = true;
+    for (const int node : scene.mesh.elements.col(e)) {
+      for (int i = 0; i < scene.mesh.Dimension(); ++i) {
+        is_measured = is_measured && IsObserved(load_case, i, node);
+      }
+    }
+    if (is_measured) {
+      measured.push_back(e);
+    }
+  }
+  if (measured.empty()) {
+    return {1, 0};
+  }
+  Mesh mesh = scene.mesh;
+  mesh.elements = scene.mesh.elements(Eigen::all, measured);
+  const VolumeRatio smallest =
+      SmallestVolumeRatio(mesh, load_case.displacement.reshaped());
+  return {smallest.value, measured[smallest.element]};
 }
 
 }  // namespace
@@ -84,6 +116,28 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
                                 scene.is_rigid_motion_free));
   if (estimate.IsUsable()) {
     AddError(error, estimate.error_budget.kinematics, estimate);
+  }
+}
+
+void JudgeInversion(const Scene& scene, Estimate& estimate) {
+  const bool has_large_strains =
+      HasLargeStrainLaw(scene.materials) || !estimate.large_strain_law.empty();
+  if (!has_large_strains || estimate.series ||
+      estimate.Has(FindingCode::kInvertedElements)) {
+    return;
+  }
+  std::size_t load_case = 0;
+  VolumeRatio smallest = {1, 0};
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const VolumeRatio of_case = SmallestMeasuredRatio(scene, k);
+    if (of_case.value < smallest.value) {
+      load_case = k;
+      smallest = of_case;
+    }
+  }
+  if (smallest.value <= 0) {
+    estimate.Add(
+        InvertedElements(load_case + 1, smallest.element, smallest.value));
   }
 }
 

@@ -33,6 +33,12 @@ KinematicError KinematicErrorOf(const DeformationSize& size);
 /// and so does the joint one of a series, whose frames have.
 void JudgeKinematics(const Scene& scene, Estimate& estimate);
 
+/// Warns, where laws of large strains were fitted, of the element that measured
+/// displacements of nodes turn inside out most (finding `inverted_elements`).
+/// Elements that have a node of which a component was not measured are not
+/// looked at.  A pass for each load case.
+void JudgeInversion(const Scene& scene, Estimate& estimate);
+
 /// Adds the standard deviation of the thickness to those of moduli, and warns
 /// of it, once.
 void JudgeThickness(const Scene& scene, Estimate& estimate);

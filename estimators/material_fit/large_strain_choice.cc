@@ -189,8 +189,7 @@ std::vector<Material> MaterialsOfLargeStrains(std::vector<Material> materials,
 
 bool AsksForLargeStrains(const Scene& scene, const EstimatorOptions& options) {
   if (options.kinematics != Kinematics::kAutomatic ||
-      scene.origin != Origin::kMeasured || scene.is_rigid_motion_free ||
-      !AreIsotropic(scene.materials)) {
+      scene.origin != Origin::kMeasured || !AreIsotropic(scene.materials)) {
     return options.kinematics == Kinematics::kLarge;
   }
   const DeformationSize size = MeasureDeformation(scene);

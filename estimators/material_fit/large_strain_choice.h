@@ -18,8 +18,8 @@ namespace elastimate {
 /// Tells whether laws of large strains are to be fitted in place of isotropic
 /// ones.  The options decide if they ask for small or large kinematics.  If
 /// they leave it open, it is true for measured displacements of isotropic
-/// materials without a free rigid motion, if strains or rotations are large
-/// enough to be mentioned (IsMentioned) and strains are not impossible.
+/// materials, if strains or rotations are large enough to be mentioned
+/// (IsMentioned) and strains are not impossible.
 [[nodiscard]] bool AsksForLargeStrains(const Scene& scene,
                                        const EstimatorOptions& options);
 

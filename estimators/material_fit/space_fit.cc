@@ -312,7 +312,7 @@ bool SpaceFit::CompareRows(SpaceFit& coarse, const Eigen::VectorXd& variables,
     return false;
   }
   coarse.misfit_.Model().BeginWith(
-      misfit_.FittedDisplacement().topRows(coarse.scene_.mesh.NumDofs()));
+      misfit_.Displacement().topRows(coarse.scene_.mesh.NumDofs()));
   if (!coarse.misfit_.Evaluate(variables, &of_coarse, nullptr)) {
     return false;
   }

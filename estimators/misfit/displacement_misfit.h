@@ -118,8 +118,11 @@ class DisplacementMisfit {
   bool SolutionAt(const Eigen::VectorXd& x, Eigen::MatrixXd* displacement,
                   Eigen::MatrixXd* sensitivities);
 
-  /// u with all motions where the last Evaluate was, num_dofs x
-  /// num_load_cases.
+  /// u where the last Evaluate was, num_dofs x num_load_cases: in the specimen,
+  /// and as a camera sees it that may have moved.
+  const Eigen::MatrixXd& Displacement() const {
+    return placed_ ? placed_->displacement : model_->Displacement();
+  }
   Eigen::MatrixXd FittedDisplacement() const {
     return motion_ ? motion_->FittedDisplacement() : Displacement();
   }
@@ -146,9 +149,6 @@ class DisplacementMisfit {
     Eigen::MatrixXd sensitivities;
   };
 
-  const Eigen::MatrixXd& Displacement() const {
-    return placed_ ? placed_->displacement : model_->Displacement();
-  }
   bool IsAt(const Eigen::VectorXd& x) const {
     return x_.size() == x.size() && x_ == x;
   }

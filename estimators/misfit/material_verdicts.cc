@@ -246,9 +246,8 @@ void DescribeMaterials(const Scene& scene, const MinimumErrors& errors,
     return;
   }
   const FreeParameters& free = misfit.Free();
-  const Eigen::VectorXd energies =
-      WorkOf(misfit.Model(), free.ModuliAt(errors.variables),
-             misfit.FittedDisplacement());
+  const Eigen::VectorXd energies = WorkOf(
+      misfit.Model(), free.ModuliAt(errors.variables), misfit.Displacement());
   estimate.materials.clear();
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     MaterialEstimate material;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/scene/rigid_motion.h"
 
 namespace elastimate {
 namespace {
@@ -26,6 +28,14 @@ constexpr int kMostIterations = 2000;
 constexpr double kRoundingOfRows = 1e-14;
 constexpr double kDependentAmounts = 1e-13;
 
+// Multiplies the vector of each node by a matrix, in all columns.
+Eigen::MatrixXd TimesEachNode(const Eigen::MatrixXd& matrix,
+                              const Eigen::MatrixXd& columns) {
+  const Eigen::Index dimension = matrix.rows();
+  return (matrix * columns.reshaped(dimension, columns.size() / dimension))
+      .reshaped(columns.rows(), columns.cols());
+}
+
 }  // namespace
 
 MotionElimination::MotionElimination(const Scene& scene,
@@ -37,8 +47,10 @@ MotionElimination::MotionElimination(const Scene& scene,
   Eigen::Index num_amounts = 0;
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     const Supports& supports = SupportsOf(scene, k);
-    const auto same = std::find(supports_of_motion.begin(),
-                                supports_of_motion.end(), &supports);
+    const auto same = model.IsLinear()
+                          ? std::find(supports_of_motion.begin(),
+                                      supports_of_motion.end(), &supports)
+                          : supports_of_motion.end();
     motion_of_case_.push_back(same - supports_of_motion.begin());
     if (same == supports_of_motion.end()) {
       supports_of_motion.push_back(&supports);
@@ -55,6 +67,13 @@ MotionElimination::MotionElimination(const Scene& scene,
     const Eigen::SparseMatrix<double>& of_supports = MotionOf(k).of_supports;
     AmountsOf(k, amounts_).head(of_supports.cols()) =
         of_supports.transpose() * MeasuredSupports(scene, k);
+  }
+  held_ = HeldMotion(amounts_);
+  if (scene.is_rigid_motion_free && !model.IsLinear()) {
+    const int dimension = scene.mesh.Dimension();
+    cameras_.assign(scene.load_cases.size(),
+                    {Eigen::MatrixXd::Identity(dimension, dimension),
+                     Eigen::VectorXd::Zero(dimension)});
   }
 }
 
@@ -92,29 +111,110 @@ std::optional<Eigen::VectorXd> MotionElimination::Refit() {
   constexpr double kSettled = 1e-8;
   constexpr int kMostSteps = 10;
   for (int i = 0; i < kMostSteps; ++i) {
-    Eigen::VectorXd rows =
-        RowsOf(WithMotionOfAll(amounts_, model_.Displacement()),
-               model_.SupportForces());
+    if (i > 0) {
+      SolveForColumns();
+    }
+    Eigen::VectorXd rows = RowsOf(FittedDisplacement(), model_.SupportForces());
     rows.head(observed_.Size()) -= observed_.Measured();
     rows.tail(NumResultants()) -= noise_ * MeasuredResultants();
     const double before = Norm(rows);
     const Eigen::VectorXd surplus = Minimize(kExact, rows);
-    amounts_ -= surplus;
-    if (!model_.MoveSupports(-HeldMotion(surplus))) {
+    if (!Move(-surplus)) {
       return std::nullopt;
     }
     if (model_.IsLinear() || before - Norm(rows) <= kSettled * before ||
-        Norm(surplus) <= kSettled * Norm(amounts_)) {
+        Norm(surplus) <=
+            kSettled * (Norm(amounts_) + model_.Displacement().norm())) {
       return rows;
     }
   }
   return std::nullopt;
 }
 
+bool MotionElimination::Move(const Eigen::VectorXd& increments) {
+  Eigen::MatrixXd change = HeldMotion(increments);
+  for (Eigen::Index k = 0; k < change.cols() && !model_.IsLinear(); ++k) {
+    change.col(k) = FiniteIncrement(scene_.mesh, SupportsOf(scene_, k),
+                                    held_.col(k), change.col(k));
+  }
+  for (Eigen::Index k = 0; k < Eigen::Index(cameras_.size()); ++k) {
+    const Eigen::MatrixXd& of_all = MotionOf(k).of_all;
+    const Eigen::MatrixXd seen = SeenPositions(k);
+    Eigen::VectorXd motion = RigidMotionNearest(
+        seen, (of_all * AmountsOf(k, increments).tail(of_all.cols()))
+                  .reshaped(seen.rows(), seen.cols()));
+    Camera& camera = cameras_[k];
+    camera.translation = MovedRigidly(camera.translation, motion);
+    motion.head(seen.rows()).setZero();
+    camera.rotation = MovedRigidly(camera.rotation, motion);
+  }
+  amounts_ += increments;
+  held_ += change;
+  return model_.MoveSupports(change);
+}
+
+Eigen::MatrixXd MotionElimination::SeenPositions(Eigen::Index k) const {
+  const Mesh& mesh = scene_.mesh;
+  const Eigen::MatrixXd positions =
+      mesh.nodes +
+      model_.Displacement().col(k).reshaped(mesh.Dimension(), mesh.NumNodes());
+  return cameras_.empty()
+             ? positions
+             : Eigen::MatrixXd((cameras_[k].rotation * positions).colwise() +
+                               cameras_[k].translation);
+}
+
+Eigen::MatrixXd MotionElimination::FittedDisplacement() const {
+  if (cameras_.empty()) {
+    return WithMotionOfAll(amounts_, model_.Displacement());
+  }
+  Eigen::MatrixXd displacement = model_.Displacement();
+  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
+    displacement.col(k) = (SeenPositions(k) - scene_.mesh.nodes).reshaped();
+  }
+  return displacement;
+}
+
+Eigen::MatrixXd MotionElimination::Turned(
+    Eigen::Index k, const Eigen::MatrixXd& changes) const {
+  return cameras_.empty() ? changes
+                          : TimesEachNode(cameras_[k].rotation, changes);
+}
+
+Eigen::MatrixXd MotionElimination::TurnedBack(
+    Eigen::Index k, const Eigen::MatrixXd& changes) const {
+  return cameras_.empty()
+             ? changes
+             : TimesEachNode(cameras_[k].rotation.transpose(), changes);
+}
+
+Eigen::MatrixXd MotionElimination::Turned(Eigen::MatrixXd changes) const {
+  for (Eigen::Index k = 0; k < Eigen::Index(cameras_.size()); ++k) {
+    changes.col(k) = Turned(k, changes.col(k));
+  }
+  return changes;
+}
+
+void MotionElimination::Linearize() {
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    const Mesh& mesh = scene_.mesh;
+    UnknownMotion about(
+        scene_, SupportsOf(scene_, k),
+        {mesh.nodes + held_.col(k).reshaped(mesh.Dimension(), mesh.NumNodes()),
+         SeenPositions(k)});
+    UnknownMotion& motion = motions_[motion_of_case_[k]];
+    // Nodes that are on a line to within rounding may be off it once moved.
+    if (about.of_supports.cols() == motion.of_supports.cols() &&
+        about.of_all.cols() == motion.of_all.cols()) {
+      motion = std::move(about);
+    }
+  }
+}
+
 Eigen::VectorXd MotionElimination::Eliminate(
     const Eigen::MatrixXd& displacements,
     const Eigen::MatrixXd& support_forces) {
-  return Eliminate(RowsOf(displacements, support_forces));
+  return Eliminate(RowsOf(Turned(displacements), support_forces));
 }
 
 Eigen::VectorXd MotionElimination::Eliminate(Eigen::VectorXd rows) {
@@ -229,7 +329,8 @@ Eigen::VectorXd MotionElimination::Multiply(const Eigen::VectorXd& amounts) {
     return MultiplyColumns(amounts);
   }
   const Eigen::MatrixXd motion = SupportMotion(amounts);
-  return RowsOf(WithMotionOfAll(amounts, motion), model_.HeldForces(motion));
+  return RowsOf(WithMotionOfAll(amounts, Turned(motion)),
+                model_.HeldForces(motion));
 }
 
 Eigen::VectorXd MotionElimination::MultiplyTransposed(
@@ -239,8 +340,12 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
   }
   const Eigen::MatrixXd of_nodes =
       observed_.RestrictTransposed(rows.head(observed_.Size()));
+  Eigen::MatrixXd of_model = of_nodes;
+  for (Eigen::Index k = 0; k < of_model.cols(); ++k) {
+    of_model.col(k) = TurnedBack(k, of_model.col(k));
+  }
   const Eigen::MatrixXd of_held = model_.ExtendTransposed(
-      of_nodes + model_.HeldForcesTransposed(
+      of_model + model_.HeldForcesTransposed(
                      ResultantsTransposed(rows.tail(NumResultants()))));
   Eigen::VectorXd amounts(amounts_.size());
   for (Eigen::Index k = 0; k < of_nodes.cols(); ++k) {
@@ -262,6 +367,9 @@ bool MotionElimination::AreAmountsFew() const {
 }
 
 void MotionElimination::SolveForColumns() {
+  if (!model_.IsLinear()) {
+    Linearize();
+  }
   are_columns_of_here_ = false;
   const bool are_worth_solving_anew = std::all_of(
       motions_.begin(), motions_.end(), [](const UnknownMotion& motion) {
@@ -308,6 +416,9 @@ void MotionElimination::SolveForColumnsOf(std::size_t index) {
         Eigen::MatrixXd::Zero(motions.rows(), motions.cols());
     forces.leftCols(num_extended) =
         model_.HeldForcesInCase(case_of_motion, motions.leftCols(num_extended));
+    // Load cases that share a motion have no cameras that turn.
+    motions.leftCols(num_extended) =
+        Turned(case_of_motion, motions.leftCols(num_extended));
     for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
       for (Eigen::Index j = first; j < end && motion_of_case_[k] == index;
            ++j) {

@@ -20,6 +20,16 @@ namespace elastimate {
 ///
 ///   A x = rows of (Extend(G b) + R a).
 ///
+/// Beside large strains, rotations are of any size: the displacement that a
+/// camera sees is C (X + u) + c - X, with a rotation C and a translation c of
+/// each load case, and rigid faces turn likewise.  Then x are increments about
+/// the present state, of which C, c and the displacement of supports are made
+/// up by finite rotations, and
+///
+///   A x = rows of (C Extend(G b) + R a),
+///
+/// where G and R are the rigid motions of what has been moved.
+///
 /// To eliminate x from a row vector y is to take the least squares residual
 /// y - A x, by conjugate gradients on the normal equations [Paige & Saunders
 /// 1982], whose number of iterations does not grow with the mesh: displacements
@@ -51,7 +61,7 @@ class MotionElimination {
 
   /// Returns the motion of supports by the amounts of the last fit: num_dofs x
   /// num_load_cases, zero in the free rows.
-  Eigen::MatrixXd HeldMotion() const { return HeldMotion(amounts_); }
+  const Eigen::MatrixXd& HeldMotion() const { return held_; }
 
   /// Moves the displacements of the model, which was solved with HeldMotion(),
   /// by the amounts that fit the measurement best, and returns the rows of what
@@ -64,11 +74,9 @@ class MotionElimination {
 
   /// The displacements of the model with the motion of all of the last Fit:
   /// num_dofs x num_load_cases.
-  Eigen::MatrixXd FittedDisplacement() const {
-    return WithMotionOfAll(amounts_, model_.Displacement());
-  }
+  Eigen::MatrixXd FittedDisplacement() const;
 
-  /// The rows of displacements and of forces of supports, num_dofs x
+  /// The rows of changes of displacements and of forces of supports, num_dofs x
   /// num_load_cases, without what amounts could explain.
   Eigen::VectorXd Eliminate(const Eigen::MatrixXd& displacements,
                             const Eigen::MatrixXd& support_forces);
@@ -103,6 +111,12 @@ class MotionElimination {
     Eigen::MatrixXd inverse_gram;
   };
 
+  /// How a camera sees positions x: as rotation x + translation.
+  struct Camera {
+    Eigen::MatrixXd rotation;
+    Eigen::VectorXd translation;
+  };
+
   Eigen::Index NumResultantsOf(Eigen::Index k) const {
     return first_resultant_[k + 1] - first_resultant_[k];
   }
@@ -120,6 +134,22 @@ class MotionElimination {
   }
   Eigen::VectorXd ResultantsOfCase(Eigen::Index k,
                                    const Eigen::VectorXd& support_forces) const;
+  /// Returns where the camera of load case `k` sees the nodes of the model:
+  /// dimension x num_nodes.
+  Eigen::MatrixXd SeenPositions(Eigen::Index k) const;
+  /// Turns changes of displacements in load case `k` (num_dofs x n) as its
+  /// camera does, or back; as they are where no camera turns.
+  Eigen::MatrixXd Turned(Eigen::Index k, const Eigen::MatrixXd& changes) const;
+  Eigen::MatrixXd TurnedBack(Eigen::Index k,
+                             const Eigen::MatrixXd& changes) const;
+  /// Does so with a column for each load case.
+  Eigen::MatrixXd Turned(Eigen::MatrixXd changes) const;
+  /// Takes the increments of motions about the present state.
+  void Linearize();
+  /// Adds increments to the motions, by finite rotations where the model is not
+  /// linear, and moves the supports of the model likewise.  False where that
+  /// has no equilibrium.
+  bool Move(const Eigen::VectorXd& increments);
   /// Where amounts are few, a solve for each, unless others' will do.
   void SolveForColumns();
   bool AreAmountsFew() const;
@@ -146,7 +176,9 @@ class MotionElimination {
   const Scene& scene_;
   const ObservedDisplacements& observed_;
   ForwardModel& model_;
-  std::vector<UnknownMotion> motions_;  ///< One for each set of supports.
+  /// One for each set of supports, or for each load case where the model is
+  /// not linear, since tangents and rotations differ.
+  std::vector<UnknownMotion> motions_;
   std::vector<std::size_t> motion_of_case_;
   std::vector<Eigen::Index> first_amount_;  ///< By load cases.
   std::vector<ResultantRow> resultants_;    ///< By load cases.
@@ -155,6 +187,9 @@ class MotionElimination {
   bool are_columns_of_here_ = false;  ///< Rather than of other moduli.
   double noise_ = 0;
   Eigen::VectorXd amounts_;  ///< In all load cases, by the last fit.
+  Eigen::MatrixXd held_;     ///< The motion of supports by these amounts.
+  /// By load cases, where rotations of the camera are of any size; else empty.
+  std::vector<Camera> cameras_;
 };
 
 }  // namespace elastimate

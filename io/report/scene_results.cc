@@ -349,6 +349,27 @@ void AddModel(const Scene& scene, const Scene& modelled,
   }
 }
 
+// Adds the displacements that the camera of a fit sees, and what they leave of
+// the measured ones.  It has turned, so that they tell no reactions under loads
+// that have not.
+void AddSeen(const Scene& scene, const Scene& modelled,
+             const Estimate& estimate, SceneResults& results) {
+  const Eigen::MatrixXd& fitted = estimate.fitted_displacement;
+  if (fitted.size() == 0) {
+    return;
+  }
+  FieldCollector collector(scene.mesh, results.fields);
+  const Scene& of_fit =
+      fitted.rows() == modelled.mesh.NumDofs() ? modelled : scene;
+  const Eigen::MatrixXd difference = MeasuredMinus(of_fit, fitted);
+  collector.AddOutliers(estimate.outliers);
+  for (Eigen::Index k = 0; k < fitted.cols(); ++k) {
+    collector.AddPoint("fitted_displacement", k, fitted);
+    collector.AddPoint("displacement_residual", k, difference);
+  }
+  results.point_residuals = MeasuredMinusAtPoints(of_fit, fitted);
+}
+
 // Adds what the model says at these parameters of its laws of large strains;
 // nothing where supports do not hold the specimen, or where there is no
 // equilibrium.
@@ -356,6 +377,10 @@ void AddLargeStrainModel(const Scene& scene, const Scene& modelled,
                          const Eigen::VectorXd& values,
                          const Estimate& estimate, SceneResults& results) {
   if (!WhyNotHeld(scene).empty()) {
+    return;
+  }
+  if (scene.is_rigid_motion_free) {
+    AddSeen(scene, modelled, estimate, results);
     return;
   }
   const auto solve = [&values](const Scene& of) {

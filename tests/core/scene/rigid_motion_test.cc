@@ -156,6 +156,30 @@ TEST_F(HeldBox, DoesNotDependOnUnitsOrPlace) {
   }
 }
 
+TEST(RigidMotionNearest, IsTheMotionWhoseFirstOrderIsGiven) {
+  for (const int dimension : {2, 3}) {
+    const Eigen::MatrixXd points =
+        Eigen::MatrixXd::Random(dimension, 7).array() + 5;
+    const Eigen::VectorXd middle = points.rowwise().mean();
+    Eigen::VectorXd motion =
+        Eigen::VectorXd::LinSpaced(NumRigidMotions(dimension), 0.3, 0.7);
+    // A rotation about the middle, which stays where it is but for the
+    // translation.
+    const Eigen::MatrixXd change =
+        (RigidMotionsOf(points.colwise() - middle) * motion)
+            .reshaped(dimension, points.cols());
+    const Eigen::VectorXd found = RigidMotionNearest(points, change);
+    const Eigen::VectorXd translation = motion.head(dimension);
+    motion.head(dimension) += middle;
+    EXPECT_LT((MovedRigidly(points, found) -
+               MovedRigidly(points.colwise() - middle, motion))
+                  .norm(),
+              1e-12);
+    EXPECT_LT((MovedRigidly(middle, found) - middle - translation).norm(),
+              1e-12);
+  }
+}
+
 TEST(WhyNotHeld, NamesThePartThatIsFree) {
   const Mesh box = BoxMesh({1, 1, 1}, {1, 1, 1});
   Mesh mesh;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/rigid_motion.h"
 #include "tests/element_kinds.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -90,6 +91,45 @@ TEST(UnknownMotionOfScene, HasTheMotionsThatAFaceCanSay) {
       scene.supports.held.count() - 3 * Eigen::Index(edge.size());
   EXPECT_EQ(UnknownMotion(scene, scene.supports).of_supports.cols(),
             of_others + 5);
+}
+
+// A step of the linear motions about where a face is, which another turn took
+// there, leaves its distances what they are, by whatever angle it turns.
+TEST(UnknownMotionOfScene, MovesAFaceByFiniteRotations) {
+  Scene scene = Cube();
+  const std::vector<int> nodes = HeldNodesOf(scene);
+  scene.supports.rigid_faces = {{nodes, Components::Constant(3, true)}};
+  const Eigen::MatrixXd& at_rest = scene.mesh.nodes;
+  Eigen::VectorXd turn(6);
+  turn << 0.1, 0.2, 0.3, 0.4, -0.5, 0.6;
+  const Eigen::VectorXd displacement =
+      (MovedRigidly(at_rest, turn) - at_rest).reshaped();
+  const UnknownMotion motion(
+      scene, scene.supports,
+      {at_rest + displacement.reshaped(3, at_rest.cols()), at_rest});
+  ASSERT_EQ(motion.of_supports.cols(), 6);
+  const Eigen::VectorXd increment =
+      motion.of_supports * Eigen::VectorXd::LinSpaced(6, -1, 1);
+  const Eigen::MatrixXd moved =
+      at_rest + (displacement + FiniteIncrement(scene.mesh, scene.supports,
+                                                displacement, increment))
+                    .reshaped(3, at_rest.cols());
+  for (const int a : nodes) {
+    for (const int b : nodes) {
+      EXPECT_NEAR((moved.col(a) - moved.col(b)).norm(),
+                  (at_rest.col(a) - at_rest.col(b)).norm(), 1e-12);
+    }
+  }
+  // To first order, it is the increment.
+  const Eigen::VectorXd small = 1e-4 * increment;
+  const Eigen::VectorXd error =
+      FiniteIncrement(scene.mesh, scene.supports, displacement, small) - small;
+  EXPECT_LT(error.norm(), 1e-3 * small.norm());
+  // Other supports move linearly.
+  scene.supports.rigid_faces.clear();
+  EXPECT_EQ(
+      FiniteIncrement(scene.mesh, scene.supports, displacement, increment),
+      increment);
 }
 
 TEST(UnknownMotionOfScene, OfAllIsRigid) {
