@@ -86,7 +86,7 @@ double LogModulusAt(const std::string& name, const Eigen::VectorXd& point) {
   if (name == "two") {
     const double radius = is_planar ? 0.12 : 0.15;
     const Eigen::VectorXd middle = Eigen::VectorXd::Constant(point.size(), 0.5);
-    const Eigen::VectorXd off = Eigen::VectorXd::Constant(point.size(), 0.17);
+    const Eigen::VectorXd off = 0.17 * Eigen::VectorXd::Unit(point.size(), 0);
     return is_within(radius, middle - off) || is_within(radius, middle + off)
                ? std::log(5.0)
                : 0;

@@ -23,7 +23,7 @@ struct MapScene {
 ///   hom     1 everywhere
 ///   incK    K times as stiff within a radius of 0.2 (in space 0.25) about
 ///           (0.5, 0.55), for a number K
-///   two     5 times as stiff within 0.12 (0.15) about 0.5 -+ 0.17
+///   two     5 times as stiff within 0.12 (0.15) about (0.5 -+ 0.17, 0.5)
 ///   grad    ln 3 (height - 0.5) + 0.3 sin 2 pi x
 ///   lay     layers of E = 1, 3, 1, 2 from the base up
 double LogModulusAt(const std::string& name, const Eigen::VectorXd& point);
