@@ -1,12 +1,69 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 
+#include <cblas.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <utility>
+
+// LAPACK has no header of its own in OpenBLAS.
+extern "C" void dsyevd_(const char* job, const char* triangle, const int* size,
+                        double* a, const int* leading, double* values,
+                        double* work, const int* work_size, int* integers,
+                        const int* num_integers, int* info);
 
 namespace elastimate {
+namespace {
+
+// Smaller matrices gain nothing from LAPACK.
+constexpr Eigen::Index kLargeSymmetric = 100;
+
+Eigen::MatrixXd ProductBy(CBLAS_TRANSPOSE transposed, const Eigen::MatrixXd& a,
+                          const Eigen::MatrixXd& b) {
+  const Eigen::Index num_rows = transposed == CblasTrans ? a.cols() : a.rows();
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(num_rows, b.cols());
+  if (product.size() > 0 && b.rows() > 0) {
+    cblas_dgemm(CblasColMajor, transposed, CblasNoTrans, int(num_rows),
+                int(b.cols()), int(b.rows()), 1, a.data(), int(a.rows()),
+                b.data(), int(b.rows()), 0, product.data(), int(num_rows));
+  }
+  return product;
+}
+
+// Divide and conquer.  Empty where LAPACK does not converge.
+SymmetricEigenDecomposition DecomposeByLapack(Eigen::MatrixXd a) {
+  const int size = int(a.rows());
+  const int query = -1;
+  Eigen::VectorXd values(size);
+  double work_size = 0;
+  int num_integers = 0;
+  int info = 0;
+  dsyevd_("V", "L", &size, a.data(), &size, values.data(), &work_size, &query,
+          &num_integers, &query, &info);
+  Eigen::VectorXd work{Eigen::Index(work_size)};
+  Eigen::VectorXi integers(num_integers);
+  const int num_work = int(work.size());
+  dsyevd_("V", "L", &size, a.data(), &size, values.data(), work.data(),
+          &num_work, integers.data(), &num_integers, &info);
+  if (info != 0) {
+    return {};
+  }
+  return {std::move(values), std::move(a)};
+}
+
+}  // namespace
+
+Eigen::MatrixXd Product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return ProductBy(CblasNoTrans, a, b);
+}
+
+Eigen::MatrixXd ProductOfTransposed(const Eigen::MatrixXd& a,
+                                    const Eigen::MatrixXd& b) {
+  return ProductBy(CblasTrans, a, b);
+}
 
 QrDecomposition DecomposeQr(const Eigen::MatrixXd& a) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a);
@@ -56,6 +113,12 @@ SingularValueDecomposition DecomposeSingularValues(const Eigen::MatrixXd& a) {
 }
 
 SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a) {
+  if (a.rows() >= kLargeSymmetric && a.allFinite()) {
+    SymmetricEigenDecomposition decomposition = DecomposeByLapack(a);
+    if (decomposition.values.size() > 0) {
+      return decomposition;
+    }
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }

@@ -11,6 +11,14 @@ namespace elastimate {
 // a compiler ten seconds in every source that names them.  Costs are those of
 // Eigen's: O(m n^2) for m x n.
 
+/// Returns A B, for m x k and k x n.  Large products are several times as fast
+/// by BLAS as by Eigen, which is compiled for any processor.
+[[nodiscard]] Eigen::MatrixXd Product(const Eigen::MatrixXd& a,
+                                      const Eigen::MatrixXd& b);
+/// Returns A^T B likewise, for k x m and k x n.
+[[nodiscard]] Eigen::MatrixXd ProductOfTransposed(const Eigen::MatrixXd& a,
+                                                  const Eigen::MatrixXd& b);
+
 /// A = Q R, with min(m, n) orthonormal columns in Q.
 struct QrDecomposition {
   Eigen::MatrixXd q;  ///< m x min(m, n)
@@ -52,7 +60,9 @@ struct SymmetricEigenDecomposition {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-/// Decomposes a symmetric A for B = 1; only its lower triangle is read.
+/// Decomposes a symmetric A for B = 1; only its lower triangle is read.  A
+/// large one is left to LAPACK, for the speed of its BLAS.  Throws
+/// std::bad_alloc when there is not enough memory.
 [[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
     const Eigen::MatrixXd& a);
 /// Decomposes a symmetric A for a positive definite B; only the lower triangles

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/maps/curvature_modes.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +17,15 @@ constexpr Eigen::Index kFirstModes = 64;
 constexpr double kMostModeEntries = 4e7;
 constexpr Eigen::Index kProbes = 8;
 
+// Returns orthonormal columns up to rounding times the square of the condition
+// of those given, which is small for random ones.  A second time mends that.
+Eigen::MatrixXd Orthonormalised(const Eigen::MatrixXd& columns) {
+  const Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> gram(
+      ProductOfTransposed(columns, columns));
+  return Product(columns, gram.matrixU().solve(Eigen::MatrixXd::Identity(
+                              columns.cols(), columns.cols())));
+}
+
 }  // namespace
 
 void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
@@ -30,8 +40,8 @@ void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
     std::mt19937_64 generator(old + 1);
     Eigen::MatrixXd columns = StandardNormal(size, more, generator);
     for (int i = 0; i < 2; ++i) {
-      columns -= basis_ * (basis_.transpose() * columns);
-      columns = DecomposeQr(columns).q;
+      columns -= Product(basis_, ProductOfTransposed(basis_, columns));
+      columns = Orthonormalised(columns);
     }
     basis_.conservativeResize(Eigen::NoChange, old + more);
     products_.conservativeResize(Eigen::NoChange, old + more);
@@ -52,24 +62,25 @@ void CurvatureModes::Decompose(const ColumnOperator& multiply) {
   const double shift = std::sqrt(double(size)) *
                        std::numeric_limits<double>::epsilon() *
                        products_.norm();
-  Eigen::MatrixXd sketch = basis_.transpose() * products_;
+  Eigen::MatrixXd sketch = ProductOfTransposed(basis_, products_);
   sketch = (sketch + sketch.transpose()).eval() / 2;
   sketch.diagonal().array() += shift;
   const SymmetricEigenDecomposition of_sketch = DecomposeSymmetric(sketch);
   const Eigen::MatrixXd root =
       of_sketch.vectors *
       of_sketch.values.cwiseMax(shift).cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd columns = (products_ + shift * basis_) * root;
+  const Eigen::MatrixXd columns = Product(products_ + shift * basis_, root);
   const SymmetricEigenDecomposition gram =
-      DecomposeSymmetric(columns.transpose() * columns);
+      DecomposeSymmetric(ProductOfTransposed(columns, columns));
   const Eigen::Index r = columns.cols();
   values_ = (gram.values.reverse().array() - shift).cwiseMax(0.0);
-  vectors_ = columns * gram.vectors.rowwise().reverse() *
-             gram.values.reverse()
-                 .cwiseMax(std::numeric_limits<double>::min())
-                 .cwiseSqrt()
-                 .cwiseInverse()
-                 .asDiagonal();
+  vectors_ =
+      Product(columns, gram.vectors.rowwise().reverse() *
+                           gram.values.reverse()
+                               .cwiseMax(std::numeric_limits<double>::min())
+                               .cwiseSqrt()
+                               .cwiseInverse()
+                               .asDiagonal());
   // The last vectors are rounding where H has a null space.
   Eigen::Index kept = r;
   while (kept > 0 && values_(kept - 1) <= 1e-13 * values_(0)) {
@@ -83,10 +94,10 @@ void CurvatureModes::Decompose(const ColumnOperator& multiply) {
   if (!is_all) {
     std::mt19937_64 generator(0);
     Eigen::MatrixXd probes = StandardNormal(size, kProbes, generator);
-    probes -= basis_ * (basis_.transpose() * probes);
-    const double by_modes =
-        (values_.cwiseSqrt().asDiagonal() * (vectors_.transpose() * probes))
-            .squaredNorm();
+    probes -= Product(basis_, ProductOfTransposed(basis_, probes));
+    const double by_modes = (values_.cwiseSqrt().asDiagonal() *
+                             ProductOfTransposed(vectors_, probes))
+                                .squaredNorm();
     // A mean over directions beside the basis is that of all of them there.
     trace_left_ =
         std::max(0.0, (probes.cwiseProduct(multiply(probes)).sum() - by_modes) /
@@ -108,7 +119,8 @@ Eigen::MatrixXd CurvatureModes::Solve(double k,
                                       const Eigen::MatrixXd& b) const {
   // (I / k + H)^-1 = k (I - U diag(k lambda / (1 + k lambda)) U^T).
   const Eigen::VectorXd share = k * values_.array() / (1 + k * values_.array());
-  return k * (b - vectors_ * (share.asDiagonal() * (vectors_.transpose() * b)));
+  return k * (b - Product(vectors_, share.asDiagonal() *
+                                        ProductOfTransposed(vectors_, b)));
 }
 
 Eigen::MatrixXd CurvatureModes::SolveFor(

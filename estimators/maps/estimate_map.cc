@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/laws/elasticity.h"
@@ -119,7 +121,7 @@ class MapBuilder {
       : scene_(scene),
         linear_(linear),
         solver_(options.solver),
-        prior_(scene.mesh),
+        prior_(std::make_unique<FieldPrior>(scene.mesh)),
         model_(scene, options.solver),
         problem_{model_, options.known_poisson_ratio,
                  trusts_noise ? GivenNoise() : std::nullopt} {}
@@ -127,7 +129,7 @@ class MapBuilder {
   MapEstimate Build(const std::optional<double>& start) {
     map_.element_order = scene_.mesh.Order();
     map_.is_scale_known = start.has_value();
-    const std::vector<int> whole(std::size_t(prior_.NumElements()), 0);
+    const std::vector<int> whole(std::size_t(prior_->NumElements()), 0);
     const std::optional<LevelFit> homogeneous =
         FitLevels(problem_, whole,
                   Eigen::VectorXd::Constant(1, std::log(start.value_or(1))),
@@ -135,10 +137,10 @@ class MapBuilder {
     if (!homogeneous) {
       return Failed(SingularStiffness());
     }
-    const SmoothMap smooth = FitSmoothMap(problem_, prior_, *homogeneous);
-    const MapState sharpened = SharpenMap(problem_, prior_, smooth);
+    const SmoothMap smooth = FitSmooth(*homogeneous);
+    const MapState sharpened = SharpenMap(problem_, *prior_, smooth);
     const std::optional<RegionMap> regions =
-        FitRegions(problem_, prior_, sharpened, *homogeneous);
+        FitRegions(problem_, *prior_, sharpened, *homogeneous);
     map_.field_log_evidence = smooth.log_evidence;
     map_.region_log_evidence = regions ? regions->log_evidence : 0;
     // A field that explains less than one material does supports nothing.
@@ -146,8 +148,8 @@ class MapBuilder {
     map_.supported_parameters = is_supported ? smooth.effective_number : 0;
     map_.resolution_length =
         is_supported
-            ? ResolutionLengths(prior_, smooth)
-            : Eigen::VectorXd::Constant(prior_.NumElements(), prior_.Size());
+            ? ResolutionLengths(*prior_, smooth)
+            : Eigen::VectorXd::Constant(prior_->NumElements(), prior_->Size());
     const double best =
         std::max(map_.field_log_evidence, map_.region_log_evidence);
     if (best < kLeastEvidence) {
@@ -178,6 +180,26 @@ class MapBuilder {
     const ObservedDisplacements& observed = model_.Observed();
     return observed.GivenNoise() ? std::optional<double>(1 / observed.Norm())
                                  : std::nullopt;
+  }
+
+  // Fits a smooth field with the length of the greater evidence.
+  SmoothMap FitSmooth(const LevelFit& homogeneous) {
+    SmoothMap map = FitSmoothMap(problem_, *prior_, homogeneous);
+    auto gradual =
+        std::make_unique<FieldPrior>(scene_.mesh, FieldPrior::kGradient);
+    if (LogEvidenceWith(problem_, *gradual, *prior_, homogeneous, map) >
+        map.log_evidence) {
+      SmoothMap of_gradual = FitSmoothMap(problem_, *gradual, homogeneous);
+      if (of_gradual.log_evidence > map.log_evidence) {
+        prior_ = std::move(gradual);
+        return of_gradual;
+      }
+    }
+    // The model was solved there before.
+    static_cast<void>(model_.MoveTo(map.state.log_moduli,
+                                    map.state.poisson_ratio,
+                                    std::sqrt(map.variance)));
+    return map;
   }
 
   MapEstimate Failed(const Finding& finding) {
@@ -237,8 +259,8 @@ class MapBuilder {
   // Enters the means with their covariance as (ln E, LogStiffnessRatio).
   void EnterMeans(const MapState& state, const Eigen::Matrix2d& covariance) {
     const double nu = state.poisson_ratio;
-    map_.mean_youngs_modulus = std::exp(prior_.Volumes().dot(state.log_moduli) /
-                                        prior_.Volumes().sum());
+    map_.mean_youngs_modulus = std::exp(
+        prior_->Volumes().dot(state.log_moduli) / prior_->Volumes().sum());
     map_.poisson_ratio = nu;
     map_.covariance = OfParameters(state, covariance);
   }
@@ -263,16 +285,16 @@ class MapBuilder {
     const Eigen::Index n = fit.levels.size();
     Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
-      const double volume = prior_.Volumes()(e);
+    for (Eigen::Index e = 0; e < prior_->NumElements(); ++e) {
+      const double volume = prior_->Volumes()(e);
       volumes(region_of_element[e]) += volume;
       lengths(region_of_element[e]) += volume * map_.resolution_length(e);
     }
-    const Eigen::VectorXd largest = LargestParts(region_of_element, n, prior_);
+    const Eigen::VectorXd largest = LargestParts(region_of_element, n, *prior_);
     const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
     for (Eigen::Index i = 0; i < n; ++i) {
       const double modulus = std::exp(fit.levels(i));
-      const double diameter = DiameterOf(largest(i), prior_.Dimension());
+      const double diameter = DiameterOf(largest(i), prior_->Dimension());
       map_.regions.push_back(
           {modulus, modulus * sd(i), scene_.mesh.section.thickness * volumes(i),
            diameter,
@@ -280,8 +302,8 @@ class MapBuilder {
     }
     map_.region_of_element = region_of_element;
     map_.youngs_modulus = fit.state.log_moduli.array().exp();
-    map_.youngs_modulus_standard_error.resize(prior_.NumElements());
-    for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
+    map_.youngs_modulus_standard_error.resize(prior_->NumElements());
+    for (Eigen::Index e = 0; e < prior_->NumElements(); ++e) {
       map_.youngs_modulus_standard_error(e) =
           map_.regions[region_of_element[e]].standard_error;
     }
@@ -300,7 +322,7 @@ class MapBuilder {
     static_cast<void>(model_.MoveTo(smooth.state.log_moduli,
                                     smooth.state.poisson_ratio,
                                     std::sqrt(smooth.variance)));
-    const MapErrors errors = DescribeMap(problem_, prior_, smooth);
+    const MapErrors errors = DescribeMap(problem_, *prior_, smooth);
     map_.youngs_modulus = smooth.state.log_moduli.array().exp();
     map_.youngs_modulus_standard_error =
         map_.youngs_modulus.cwiseProduct(errors.log_modulus_sd);
@@ -328,7 +350,7 @@ class MapBuilder {
       }
     }
     const double spread =
-        SpreadOfLog(map_.youngs_modulus.array().log(), prior_.Volumes());
+        SpreadOfLog(map_.youngs_modulus.array().log(), prior_->Volumes());
     if (scene_.origin == Origin::kMeasured &&
         map_.verdict != MapVerdict::kHomogeneous && spread < kOfTheMesh) {
       map_.findings.push_back(MayBeTheMesh(spread));
@@ -345,7 +367,7 @@ class MapBuilder {
   const Scene& scene_;
   const Scene* linear_;
   SolverKind solver_;
-  FieldPrior prior_;
+  std::unique_ptr<FieldPrior> prior_;
   FieldSensitivity model_;
   MapProblem problem_;
   MapEstimate map_;

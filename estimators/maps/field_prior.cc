@@ -1,6 +1,6 @@
 #include "elastimate/estimators/maps/field_prior.h"
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/CholmodSupport>
 #include <Eigen/SparseCore>
 #include <cmath>
 #include <vector>
@@ -8,8 +8,6 @@
 namespace elastimate {
 namespace {
 
-// The correlation length relative to the size of the body.
-constexpr double kRelativeLength = 0.4;
 // The Robin coefficient of the surface is kappa over this number, which makes
 // the variance of the field even.
 constexpr double kRobin = 1.42;
@@ -25,10 +23,17 @@ double MaternVariance(double kappa, int dimension) {
 
 struct FieldPrior::Factor {
   Eigen::SparseMatrix<double> matrix;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inverse;
+  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> inverse;
+
+  // AMD orders alike in every thread, which METIS does not.
+  Factor() {
+    inverse.cholmod().nmethods = 1;
+    inverse.cholmod().method[0].ordering = CHOLMOD_AMD;
+    inverse.cholmod().postorder = 1;
+  }
 };
 
-FieldPrior::FieldPrior(const Mesh& mesh)
+FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
     : dimension_(mesh.Dimension()),
       volumes_(ElementVolumes(mesh) / mesh.section.thickness),
       facets_(FacetsOfElements(mesh)),
@@ -36,7 +41,7 @@ FieldPrior::FieldPrior(const Mesh& mesh)
   const Eigen::Index n = mesh.NumElements();
   size_ = std::pow(volumes_.sum(), 1.0 / dimension_);
   const double kappa =
-      std::sqrt(8 * (2 - dimension_ / 2.0)) / (kRelativeLength * size_);
+      std::sqrt(8 * (2 - dimension_ / 2.0)) / (relative_length * size_);
   scale_ = (volumes_ / MaternVariance(kappa, dimension_)).cwiseSqrt();
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index e = 0; e < n; ++e) {

@@ -23,13 +23,18 @@ namespace elastimate {
 /// a section.  v is the variance of the Matern field in unbounded space, so
 /// that x_e has about the variance tau^2 in every element [Lindgren, Rue &
 /// Lindstroem, J. R. Stat. Soc. B 73 (2011) 423; Roininen, Huttunen & Lasanen,
-/// Inverse Probl. Imaging 8 (2014) 561].  rho is 0.4 of the size of the body,
-/// which is the d-th root of its volume.
+/// Inverse Probl. Imaging 8 (2014) 561].  rho is relative to the size of the
+/// body, which is the d-th root of its volume.
 class FieldPrior {
  public:
+  /// The length of a body with inclusions, and of one with a gradient, in which
+  /// ln E changes from one end to the other.
+  static constexpr double kInclusions = 0.4;
+  static constexpr double kGradient = 2;
+
   /// Precondition: a valid mesh.  A sparse factorisation of the size
   /// num_elements.
-  explicit FieldPrior(const Mesh& mesh);
+  explicit FieldPrior(const Mesh& mesh, double relative_length = kInclusions);
   ~FieldPrior();
 
   Eigen::Index NumElements() const { return scale_.size(); }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "elastimate/core/algebra/dense_algebra.h"
+
 namespace elastimate {
 namespace {
 
@@ -202,6 +204,35 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
     map.y += share * delta;
     change_since_modes += share * change;
   }
+}
+
+double LogEvidenceWith(const MapProblem& problem, const FieldPrior& other,
+                       const FieldPrior& prior, const LevelFit& homogeneous,
+                       const SmoothMap& map) {
+  FieldSensitivity& model = problem.model;
+  const Eigen::Index n = prior.NumElements();
+  const FlatUnknowns unknowns(problem, map.state, Eigen::MatrixXd::Ones(n, 1));
+  // The data as if the field were zero there.
+  const Eigen::VectorXd data =
+      unknowns.Project(model.Residual() + model.Multiply(prior.Apply(map.y)));
+  // S^T Pi S = G G^T.
+  const Eigen::MatrixXd root =
+      other.ApplyTransposed(prior.ApplyInverseTransposed(map.modes.Vectors())) *
+      map.modes.Values().cwiseSqrt().asDiagonal();
+  CurvatureModes modes(n);
+  modes.AddUntil(kLeastOfModes / map.ratio, [&](const Eigen::MatrixXd& y) {
+    return Product(root, ProductOfTransposed(root, y));
+  });
+  const FieldEvidence evidence = {
+      problem,
+      modes,
+      data.squaredNorm(),
+      other.ApplyTransposed(model.MultiplyTransposed(data)),
+      Eigen::VectorXd::Zero(n),
+      double(model.NumIndependentRows() - unknowns.Rank())};
+  const double k = BestRatio(evidence);
+  return (evidence.Of(0, homogeneous.square_sum) - evidence.At(std::log(k))) /
+         2;
 }
 
 }  // namespace elastimate

@@ -55,6 +55,16 @@ struct SmoothMap {
                                      const FieldPrior& prior,
                                      const LevelFit& homogeneous);
 
+/// Returns ln B of a map with another prior, as far as the modes of this one
+/// tell: they stand for S^T Pi S, which takes the place of solves.  O(n r^2)
+/// for r modes.  Preconditions: the model is at the map, and the other prior is
+/// smoother, so that the modes hold what counts there.
+[[nodiscard]] double LogEvidenceWith(const MapProblem& problem,
+                                     const FieldPrior& other,
+                                     const FieldPrior& prior,
+                                     const LevelFit& homogeneous,
+                                     const SmoothMap& map);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_MAPS_SMOOTH_MAP_H_

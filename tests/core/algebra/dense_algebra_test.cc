@@ -22,5 +22,24 @@ TEST(SolveLeastSquares, LeavesOutColumnsThatAreNearlyDependent) {
   EXPECT_NEAR((a * x - b).squaredNorm(), 0.3, 1e-6);
 }
 
+// 120 columns are enough for LAPACK.
+TEST(DecomposeSymmetric, DecomposesLargeMatrices) {
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(120, 150);
+  const Eigen::MatrixXd gram = a * a.transpose();
+  EXPECT_LT((Product(a, a.transpose()) - gram).norm(), 1e-12 * gram.norm());
+  EXPECT_LT((ProductOfTransposed(a, a) - a.transpose() * a).norm(),
+            1e-12 * gram.norm());
+  const SymmetricEigenDecomposition decomposition =
+      DecomposeSymmetric(gram.triangularView<Eigen::Lower>());
+  const Eigen::MatrixXd& x = decomposition.vectors;
+  EXPECT_LT((gram * x - x * decomposition.values.asDiagonal()).norm(),
+            1e-12 * gram.norm());
+  EXPECT_LT((x.transpose() * x - Eigen::MatrixXd::Identity(120, 120)).norm(),
+            1e-11);
+  for (Eigen::Index i = 1; i < 120; ++i) {
+    EXPECT_LE(decomposition.values(i - 1), decomposition.values(i));
+  }
+}
+
 }  // namespace
 }  // namespace elastimate
