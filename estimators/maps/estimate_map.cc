@@ -185,21 +185,32 @@ class MapBuilder {
   // Fits a smooth field with the length of the greater evidence.
   SmoothMap FitSmooth(const LevelFit& homogeneous) {
     SmoothMap map = FitSmoothMap(problem_, *prior_, homogeneous);
+    if (map.log_evidence < kLeastEvidence) {
+      return map;
+    }
     auto gradual =
         std::make_unique<FieldPrior>(scene_.mesh, FieldPrior::kGradient);
-    if (LogEvidenceWith(problem_, *gradual, *prior_, homogeneous, map) >
-        map.log_evidence) {
-      SmoothMap of_gradual = FitSmoothMap(problem_, *gradual, homogeneous);
-      if (of_gradual.log_evidence > map.log_evidence) {
-        prior_ = std::move(gradual);
-        return of_gradual;
-      }
+    if (LogEvidenceByModes(problem_, *gradual, *prior_, map) <=
+        LogEvidenceByModes(problem_, *prior_, *prior_, map)) {
+      return map;
     }
-    // The model was solved there before.
-    static_cast<void>(model_.MoveTo(map.state.log_moduli,
-                                    map.state.poisson_ratio,
-                                    std::sqrt(map.variance)));
+    ReturnTo(homogeneous.state,
+             problem_.Variance(homogeneous.square_sum,
+                               double(model_.NumIndependentRows() -
+                                      homogeneous.unknowns.Rank())));
+    SmoothMap of_gradual = FitSmoothMap(problem_, *gradual, homogeneous);
+    if (of_gradual.log_evidence > map.log_evidence) {
+      prior_ = std::move(gradual);
+      return of_gradual;
+    }
+    ReturnTo(map.state, map.variance);
     return map;
+  }
+
+  // Moves the model to where it was solved before.
+  void ReturnTo(const MapState& state, double variance) {
+    static_cast<void>(model_.MoveTo(state.log_moduli, state.poisson_ratio,
+                                    std::sqrt(variance)));
   }
 
   MapEstimate Failed(const Finding& finding) {
@@ -318,10 +329,7 @@ class MapBuilder {
   }
 
   void EnterField(const SmoothMap& smooth) {
-    // The model was solved there before.
-    static_cast<void>(model_.MoveTo(smooth.state.log_moduli,
-                                    smooth.state.poisson_ratio,
-                                    std::sqrt(smooth.variance)));
+    ReturnTo(smooth.state, smooth.variance);
     const MapErrors errors = DescribeMap(problem_, *prior_, smooth);
     map_.youngs_modulus = smooth.state.log_moduli.array().exp();
     map_.youngs_modulus_standard_error =

@@ -12,8 +12,8 @@ namespace elastimate {
 /// to choose:
 ///
 /// 1. a homogeneous body is fitted (FitLevels);
-/// 2. a smooth field, whose size and noise maximise the evidence
-///    (FitSmoothMap), with the resolution of each element
+/// 2. a smooth field, whose length (of two), size and noise maximise the
+///    evidence (FitSmoothMap), with the resolution of each element
 ///    (ResolutionLengths) and, if it is the verdict, the error (DescribeMap);
 /// 3. the field is sharpened (SharpenMap), divided into two or three regions,
 ///    and these are fitted (FitRegions);

@@ -31,6 +31,11 @@ struct FieldPrior::Factor {
     inverse.cholmod().method[0].ordering = CHOLMOD_AMD;
     inverse.cholmod().postorder = 1;
   }
+
+  // CHOLMOD prints an error where there are no columns.
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& b) const {
+    return b.cols() == 0 ? b : Eigen::MatrixXd(inverse.solve(b));
+  }
 };
 
 FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
@@ -70,11 +75,16 @@ FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
 FieldPrior::~FieldPrior() = default;
 
 Eigen::MatrixXd FieldPrior::Apply(const Eigen::MatrixXd& y) const {
-  return factor_->inverse.solve(scale_.asDiagonal() * y);
+  return factor_->Solve(scale_.asDiagonal() * y);
 }
 
 Eigen::MatrixXd FieldPrior::ApplyTransposed(const Eigen::MatrixXd& x) const {
-  return scale_.asDiagonal() * Eigen::MatrixXd(factor_->inverse.solve(x));
+  return scale_.asDiagonal() * factor_->Solve(x);
+}
+
+Eigen::MatrixXd FieldPrior::ApplyInverse(const Eigen::MatrixXd& x) const {
+  return scale_.cwiseInverse().asDiagonal() *
+         Eigen::MatrixXd(factor_->matrix * x);
 }
 
 Eigen::MatrixXd FieldPrior::ApplyInverseTransposed(

@@ -46,13 +46,15 @@ class FieldPrior {
   const Eigen::VectorXd& Volumes() const { return volumes_; }
   const ElementFacets& Facets() const { return facets_; }
 
-  // All functions below take and return num_elements x n; the first two solve
-  // with M.
+  // All functions below take and return num_elements x n; Apply and
+  // ApplyTransposed solve with M.
 
   /// Returns A Y.
   Eigen::MatrixXd Apply(const Eigen::MatrixXd& y) const;
   /// Returns A^T X.
   Eigen::MatrixXd ApplyTransposed(const Eigen::MatrixXd& x) const;
+  /// Returns A^-1 X.
+  Eigen::MatrixXd ApplyInverse(const Eigen::MatrixXd& x) const;
   /// Returns A^-T Y.
   Eigen::MatrixXd ApplyInverseTransposed(const Eigen::MatrixXd& y) const;
 

@@ -22,6 +22,7 @@ constexpr double kSettledRatio = 0.03;
 constexpr double kStaleModes = 0.1;
 // Modes beyond k lambda = 0.3 count to first order.
 constexpr double kLeastOfModes = 0.3;
+constexpr double kLeastOfAllModes = 1e-6;
 constexpr double kAccurateSmooth = 1e-3;
 
 double RootMeanSquareOf(const Eigen::VectorXd& values) {
@@ -206,33 +207,34 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
   }
 }
 
-double LogEvidenceWith(const MapProblem& problem, const FieldPrior& other,
-                       const FieldPrior& prior, const LevelFit& homogeneous,
-                       const SmoothMap& map) {
+double LogEvidenceByModes(const MapProblem& problem, const FieldPrior& other,
+                          const FieldPrior& prior, const SmoothMap& map) {
   FieldSensitivity& model = problem.model;
   const Eigen::Index n = prior.NumElements();
   const FlatUnknowns unknowns(problem, map.state, Eigen::MatrixXd::Ones(n, 1));
-  // The data as if the field were zero there.
-  const Eigen::VectorXd data =
-      unknowns.Project(model.Residual() + model.Multiply(prior.Apply(map.y)));
+  // Those that count are the accurate ones.
+  const Eigen::Index size =
+      (map.ratio * map.modes.Values().array() >= kLeastOfModes).count();
+  const auto vectors = map.modes.Vectors().leftCols(size);
+  const Eigen::MatrixXd of_other =
+      other.ApplyTransposed(prior.ApplyInverseTransposed(vectors));
   // S^T Pi S = G G^T.
   const Eigen::MatrixXd root =
-      other.ApplyTransposed(prior.ApplyInverseTransposed(map.modes.Vectors())) *
-      map.modes.Values().cwiseSqrt().asDiagonal();
+      of_other * map.modes.Values().head(size).cwiseSqrt().asDiagonal();
+  // All of them, lest a part of the gradient be without curvature.
   CurvatureModes modes(n);
-  modes.AddUntil(kLeastOfModes / map.ratio, [&](const Eigen::MatrixXd& y) {
+  modes.AddUntil(kLeastOfAllModes / map.ratio, [&](const Eigen::MatrixXd& y) {
     return Product(root, ProductOfTransposed(root, y));
   });
+  // A^T S^T Pi r = y / k at the map.
   const FieldEvidence evidence = {
       problem,
       modes,
-      data.squaredNorm(),
-      other.ApplyTransposed(model.MultiplyTransposed(data)),
-      Eigen::VectorXd::Zero(n),
+      unknowns.Project(model.Residual()).squaredNorm(),
+      of_other * (vectors.transpose() * map.y) / map.ratio,
+      other.ApplyInverse(prior.Apply(map.y)),
       double(model.NumIndependentRows() - unknowns.Rank())};
-  const double k = BestRatio(evidence);
-  return (evidence.Of(0, homogeneous.square_sum) - evidence.At(std::log(k))) /
-         2;
+  return -evidence.At(std::log(BestRatio(evidence))) / 2;
 }
 
 }  // namespace elastimate

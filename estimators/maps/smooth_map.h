@@ -55,15 +55,15 @@ struct SmoothMap {
                                      const FieldPrior& prior,
                                      const LevelFit& homogeneous);
 
-/// Returns ln B of a map with another prior, as far as the modes of this one
-/// tell: they stand for S^T Pi S, which takes the place of solves.  O(n r^2)
-/// for r modes.  Preconditions: the model is at the map, and the other prior is
-/// smoother, so that the modes hold what counts there.
-[[nodiscard]] double LogEvidenceWith(const MapProblem& problem,
-                                     const FieldPrior& other,
-                                     const FieldPrior& prior,
-                                     const LevelFit& homogeneous,
-                                     const SmoothMap& map);
+/// Returns ln of the evidence of the field of a map with another prior, up to a
+/// constant.  The modes of the map that count stand for S^T Pi S, in place of
+/// solves; what they leave out is alike for several priors, so that these can
+/// be compared.  O(n r^2) for r modes.  Preconditions: the model is at the map,
+/// which has this `prior` and some modes of k lambda >= 0.3.
+[[nodiscard]] double LogEvidenceByModes(const MapProblem& problem,
+                                        const FieldPrior& other,
+                                        const FieldPrior& prior,
+                                        const SmoothMap& map);
 
 }  // namespace elastimate
 

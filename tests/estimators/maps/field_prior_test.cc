@@ -58,6 +58,8 @@ TEST(FieldPrior, HasTransposedAndInverseOfEachKind) {
         (prior.ApplyInverseTransposed(prior.ApplyTransposed(x)) - x).norm(),
         1e-10 * x.norm())
         << NameOf(kind);
+    EXPECT_LT((prior.ApplyInverse(prior.Apply(x)) - x).norm(), 1e-10 * x.norm())
+        << NameOf(kind);
   }
 }
 

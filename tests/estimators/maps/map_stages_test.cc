@@ -87,6 +87,28 @@ TEST(MapStages, PreferAFieldForAGradient) {
   EXPECT_GT(stages.smooth->log_evidence, stages.regions->log_evidence);
 }
 
+// The modes of one length tell which of two lengths the evidence prefers.
+TEST(MapStages, KnowTheLengthOfTheGreaterEvidence) {
+  for (const std::string name : {"grad", "inc5"}) {
+    Stages stages(name, ElementKind::kQuad4, 16, 0.01);
+    const SmoothMap& map = *stages.smooth;
+    const FieldPrior gradual(stages.truth.scene.mesh, FieldPrior::kGradient);
+    ASSERT_TRUE(stages.model.MoveTo(map.state.log_moduli,
+                                    map.state.poisson_ratio,
+                                    std::sqrt(map.variance)));
+    const double gain_by_modes =
+        LogEvidenceByModes(stages.problem, gradual, stages.prior, map) -
+        LogEvidenceByModes(stages.problem, stages.prior, stages.prior, map);
+    const MapState& start = stages.homogeneous->state;
+    ASSERT_TRUE(
+        stages.model.MoveTo(start.log_moduli, start.poisson_ratio, 1e-3));
+    const double of_fit =
+        FitSmoothMap(stages.problem, gradual, *stages.homogeneous).log_evidence;
+    EXPECT_EQ(gain_by_modes > 0, name == "grad") << name;
+    EXPECT_EQ(of_fit > map.log_evidence, name == "grad") << name;
+  }
+}
+
 // gamma, the standard deviations and the resolution are those of the dense
 // matrices H and A.
 TEST(MapStages, HaveTheErrorsOfDenseMatrices) {
