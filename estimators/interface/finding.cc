@@ -54,6 +54,7 @@ constexpr Row kRows[] = {
     {"not_resolved", FindingCode::kNotResolved},
     {"noise_sd_needed", FindingCode::kNoiseNeeded},
     {"may_be_the_mesh", FindingCode::kMayBeTheMesh},
+    {"local_map", FindingCode::kLocalMap},
 };
 
 const Row& RowOf(FindingCode code) {

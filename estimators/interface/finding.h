@@ -65,6 +65,7 @@ enum class FindingCode {
   kNotResolved,
   kNoiseNeeded,
   kMayBeTheMesh,
+  kLocalMap,
 };
 
 /// What a finding means for the estimate.

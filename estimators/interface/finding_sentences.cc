@@ -809,4 +809,30 @@ Finding MayBeTheMesh(double spread) {
           "use a finer mesh, and see whether the structure stays"};
 }
 
+Finding LocalMapNeedsExactData(double force_residual) {
+  return {FindingCode::kLocalMap, Severity::kWarning,
+          "the map takes each element by itself, whose moduli 1 % of noise "
+          "makes useless; " +
+              Percent(force_residual) + " of the forces are left over",
+          "use --estimator=iterative-fe, unless the displacements have no "
+          "noise"};
+}
+
+Finding LocalMapUndetermined() {
+  return Error(FindingCode::kParametersUndetermined,
+               "the forces at the nodes do not determine the modulus of each "
+               "element",
+               "add load cases, or use --estimator=iterative-fe");
+}
+
+Finding LocalModuliNotPositive(Eigen::Index num_bad,
+                               Eigen::Index num_elements) {
+  return Error(FindingCode::kUnphysical,
+               "the modulus of " + std::to_string(num_bad) + " of " +
+                   std::to_string(num_elements) +
+                   " elements is not positive, which noise causes in a map "
+                   "that takes each element by itself",
+               "use --estimator=iterative-fe");
+}
+
 }  // namespace elastimate

@@ -179,6 +179,10 @@ Finding NotResolved(int region, double diameter);
 Finding NoiseNeeded(double num_rows, double supported_parameters);
 /// `spread` is the standard deviation of ln E.
 Finding MayBeTheMesh(double spread);
+/// `force_residual` is relative to the loads.
+Finding LocalMapNeedsExactData(double force_residual);
+Finding LocalMapUndetermined();
+Finding LocalModuliNotPositive(Eigen::Index num_bad, Eigen::Index num_elements);
 
 }  // namespace elastimate
 

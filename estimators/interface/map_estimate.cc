@@ -9,9 +9,11 @@ std::string_view MapVerdictName(MapVerdict verdict) {
     case MapVerdict::kRegions:
       return "regions";
     case MapVerdict::kField:
+      return "field";
+    case MapVerdict::kElements:
       break;
   }
-  return "field";
+  return "elements";
 }
 
 }  // namespace elastimate

@@ -16,9 +16,12 @@ enum class MapVerdict {
   kHomogeneous,  ///< It is the same everywhere, as far as the data tell.
   kRegions,      ///< It is constant in each of two or three regions.
   kField,        ///< It varies smoothly.
+  /// Each element has a modulus of its own: there is nothing that says how
+  /// these belong together (EstimateLocalMap).
+  kElements,
 };
 
-/// "homogeneous", "regions" or "field".
+/// "homogeneous", "regions", "field" or "elements".
 [[nodiscard]] std::string_view MapVerdictName(MapVerdict verdict);
 
 /// A region of one modulus.
@@ -42,7 +45,9 @@ struct MapEstimate {
   std::vector<Finding> findings;
   MapVerdict verdict = MapVerdict::kHomogeneous;
   /// ln of the evidence of a smooth field and of regions, over that of a
-  /// homogeneous body.  Both below 3 mean that the body is homogeneous.
+  /// homogeneous body.  Both below 3 mean that the body is homogeneous.  Not
+  /// numbers for MapVerdict::kElements, which has no standard errors,
+  /// resolution lengths and regions either.
   double field_log_evidence = 0;
   double region_log_evidence = 0;
   /// gamma: how many parameters of the field the data support beside its level.

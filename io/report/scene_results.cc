@@ -121,6 +121,9 @@ class FieldCollector {
   // Adds the map of a modulus, with its error and its resolution.
   void AddMap(const MapEstimate& map) {
     fields_.cell.push_back({"youngs_modulus", map.youngs_modulus.transpose()});
+    if (map.verdict == MapVerdict::kElements) {
+      return;
+    }
     fields_.cell.push_back({"youngs_modulus_standard_error",
                             map.youngs_modulus_standard_error.transpose()});
     fields_.cell.push_back(

@@ -333,6 +333,14 @@ void AddTrend(const std::vector<ParameterEstimate>& parameters,
 
 // Says what the map is, the verdict first.
 void AddMap(const MapEstimate& map, std::ostringstream& text) {
+  if (map.verdict == MapVerdict::kElements) {
+    AddLine("map",
+            "E of each element by itself, from " +
+                NumberText(map.youngs_modulus.minCoeff(), 4) + " to " +
+                NumberText(map.youngs_modulus.maxCoeff(), 4),
+            text);
+    return;
+  }
   AddLine("map",
           map.verdict == MapVerdict::kHomogeneous ? "one material"
           : map.verdict == MapVerdict::kField

@@ -60,6 +60,23 @@ TEST_F(MapsOfBars, ShowTheStiffPart) {
             of_ends / (double(moduli.cols()) - num_middle) + std::log(2.5));
 }
 
+TEST_F(MapsOfBars, TakeEachElementByItselfWithClosedForm) {
+  Succeed("generate cuboid --elements=hex8 --cells=4,4,4 --out=block.vtu");
+  Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=exact.vtu");
+  const auto report = Succeed(
+                          "estimate exact.vtu --estimator=closed-form "
+                          "--map=youngs_modulus --json=- --out=map.vtu")
+                          .Json();
+  EXPECT_EQ(report["map"]["verdict"], "elements");
+  EXPECT_TRUE(report["map"]["log_evidence"]["field"].is_null());
+  EXPECT_NE(report["findings"].dump().find("local_map"), std::string::npos);
+  const MeshFile map = ReadMeshFile(folder_ / "map.vtu");
+  const Eigen::MatrixXd* const moduli =
+      FindArray(map.element_arrays, "youngs_modulus");
+  ASSERT_NE(moduli, nullptr);
+  EXPECT_LT((moduli->array() / 1e4 - 1).abs().maxCoeff(), 1e-6);
+}
+
 TEST_F(MapsOfBars, RefuseWhatTheyDoNotTake) {
   const std::string map = "estimate measured.vtu --map=youngs_modulus ";
   Refuse("estimate measured.vtu --estimator=auto --map=nu",

@@ -167,8 +167,13 @@ std::vector<Finding> OfElements() {
 }
 
 std::vector<Finding> OfMaps() {
-  return {Misfit(1.23), NotResolved(2, 0.123), NoiseNeeded(123456, 12345),
-          MayBeTheMesh(0.0123)};
+  return {Misfit(1.23),
+          NotResolved(2, 0.123),
+          NoiseNeeded(123456, 12345),
+          MayBeTheMesh(0.0123),
+          LocalMapNeedsExactData(kLong),
+          LocalMapUndetermined(),
+          LocalModuliNotPositive(1000000, 1000000)};
 }
 
 std::vector<Finding> EveryFinding() {

@@ -20,7 +20,7 @@ TEST(Finding, EveryCodeHasItsName) {
     EXPECT_TRUE(names.insert(FindingCodeName(code)).second);
     EXPECT_NE(StatusOf(code), Status::kOk);
   }
-  EXPECT_EQ(AllFindingCodes().back(), FindingCode::kMayBeTheMesh);
+  EXPECT_EQ(AllFindingCodes().back(), FindingCode::kLocalMap);
   EXPECT_EQ(FindingCodeName(FindingCode::kSmoothResidual), "smooth_residual");
 }
 

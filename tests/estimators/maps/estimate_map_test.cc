@@ -82,7 +82,8 @@ TEST(EstimateMap, FindsAFieldWithItsErrors) {
   const MapScene truth = MakeMapScene("grad", kQuads, 16, 0.01);
   const MapEstimate map = EstimateMap(truth.scene, {});
   ASSERT_EQ(map.verdict, MapVerdict::kField);
-  EXPECT_LT(ErrorOf(map, truth), 0.2);
+  // With the length for inclusions it would be 0.12.
+  EXPECT_LT(ErrorOf(map, truth), 0.1);
   const Eigen::ArrayXd deviations =
       map.youngs_modulus.array().log() - truth.log_moduli.array();
   const Eigen::ArrayXd sd =
@@ -208,7 +209,7 @@ TEST(EstimateMap, IsAnEstimateOfIterativeFeAndAuto) {
 TEST(EstimateMap, IsRefusedWhereItMakesNoSense) {
   const Scene scene = WithField(MakeMapScene("hom", kQuads, 4, 0.01).scene);
   EXPECT_NE(
-      MakeEstimator("closed-form")->WhyUnsupported(scene, {}).find("--map"),
+      MakeEstimator("reduced-fe")->WhyUnsupported(scene, {}).find("--map"),
       std::string::npos);
   EstimatorOptions options;
   options.poisson_ratio.upper = 0.4;
