@@ -56,6 +56,31 @@ void CurvatureModes::Renew(const ColumnOperator& multiply) {
   Decompose(multiply);
 }
 
+CurvatureModes CurvatureModes::OfRoot(const Eigen::MatrixXd& g) {
+  CurvatureModes modes(g.rows());
+  modes.TakeModesOf(g, 0);
+  return modes;
+}
+
+void CurvatureModes::TakeModesOf(const Eigen::MatrixXd& g, double shift) {
+  const SymmetricEigenDecomposition gram =
+      DecomposeSymmetric(ProductOfTransposed(g, g));
+  values_ = (gram.values.reverse().array() - shift).cwiseMax(0.0);
+  vectors_ = Product(g, gram.vectors.rowwise().reverse() *
+                            gram.values.reverse()
+                                .cwiseMax(std::numeric_limits<double>::min())
+                                .cwiseSqrt()
+                                .cwiseInverse()
+                                .asDiagonal());
+  // The last vectors are rounding where H has a null space.
+  Eigen::Index kept = values_.size();
+  while (kept > 1 && values_(kept - 1) <= 1e-13 * values_(0)) {
+    --kept;
+  }
+  values_.conservativeResize(kept);
+  vectors_.conservativeResize(Eigen::NoChange, kept);
+}
+
 void CurvatureModes::Decompose(const ColumnOperator& multiply) {
   const Eigen::Index size = basis_.rows();
   // A small shift keeps the factor of the sketch definite.
@@ -70,26 +95,8 @@ void CurvatureModes::Decompose(const ColumnOperator& multiply) {
       of_sketch.vectors *
       of_sketch.values.cwiseMax(shift).cwiseSqrt().cwiseInverse().asDiagonal();
   const Eigen::MatrixXd columns = Product(products_ + shift * basis_, root);
-  const SymmetricEigenDecomposition gram =
-      DecomposeSymmetric(ProductOfTransposed(columns, columns));
-  const Eigen::Index r = columns.cols();
-  values_ = (gram.values.reverse().array() - shift).cwiseMax(0.0);
-  vectors_ =
-      Product(columns, gram.vectors.rowwise().reverse() *
-                           gram.values.reverse()
-                               .cwiseMax(std::numeric_limits<double>::min())
-                               .cwiseSqrt()
-                               .cwiseInverse()
-                               .asDiagonal());
-  // The last vectors are rounding where H has a null space.
-  Eigen::Index kept = r;
-  while (kept > 0 && values_(kept - 1) <= 1e-13 * values_(0)) {
-    --kept;
-  }
-  kept = std::max<Eigen::Index>(kept, 1);
-  const bool is_all = r == size;
-  values_.conservativeResize(kept);
-  vectors_.conservativeResize(Eigen::NoChange, kept);
+  TakeModesOf(columns, shift);
+  const bool is_all = columns.cols() == size;
   trace_left_ = 0;
   if (!is_all) {
     std::mt19937_64 generator(0);

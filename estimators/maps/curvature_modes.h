@@ -23,6 +23,9 @@ class CurvatureModes {
   explicit CurvatureModes(Eigen::Index size)
       : basis_(size, 0), products_(size, 0), vectors_(size, 0), values_(0) {}
 
+  /// Returns all modes of H = G G^T with n x r G.  O(n r^2).
+  [[nodiscard]] static CurvatureModes OfRoot(const Eigen::MatrixXd& g);
+
   /// Enlarges the number of modes until the least lambda is below `least`, or
   /// there are all or as many as memory is for (1 GB).  `multiply` is H.  Costs
   /// a product for each mode, many columns at once, and O(n r^2) for r modes.
@@ -50,6 +53,8 @@ class CurvatureModes {
 
  private:
   void Decompose(const ColumnOperator& multiply);
+  // Takes the modes of G G^T - shift.
+  void TakeModesOf(const Eigen::MatrixXd& g, double shift);
   double LeastValue() const { return values_(Size() - 1); }
   /// How many modes of the least lambda have the trace that is left out.
   double NumLeft() const {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "elastimate/core/algebra/dense_algebra.h"
-
 namespace elastimate {
 namespace {
 
@@ -22,7 +20,6 @@ constexpr double kSettledRatio = 0.03;
 constexpr double kStaleModes = 0.1;
 // Modes beyond k lambda = 0.3 count to first order.
 constexpr double kLeastOfModes = 0.3;
-constexpr double kLeastOfAllModes = 1e-6;
 constexpr double kAccurateSmooth = 1e-3;
 
 double RootMeanSquareOf(const Eigen::VectorXd& values) {
@@ -219,13 +216,8 @@ double LogEvidenceByModes(const MapProblem& problem, const FieldPrior& other,
   const Eigen::MatrixXd of_other =
       other.ApplyTransposed(prior.ApplyInverseTransposed(vectors));
   // S^T Pi S = G G^T.
-  const Eigen::MatrixXd root =
-      of_other * map.modes.Values().head(size).cwiseSqrt().asDiagonal();
-  // All of them, lest a part of the gradient be without curvature.
-  CurvatureModes modes(n);
-  modes.AddUntil(kLeastOfAllModes / map.ratio, [&](const Eigen::MatrixXd& y) {
-    return Product(root, ProductOfTransposed(root, y));
-  });
+  const CurvatureModes modes = CurvatureModes::OfRoot(
+      of_other * map.modes.Values().head(size).cwiseSqrt().asDiagonal());
   // A^T S^T Pi r = y / k at the map.
   const FieldEvidence evidence = {
       problem,

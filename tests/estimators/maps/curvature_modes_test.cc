@@ -71,5 +71,22 @@ TEST(CurvatureModes, AreExactWhereAllAreAskedFor) {
       1e-5);
 }
 
+TEST(CurvatureModes, AreThoseOfARoot) {
+  const Eigen::MatrixXd g = Decaying(40).leftCols(12);
+  const CurvatureModes modes = CurvatureModes::OfRoot(g);
+  ASSERT_EQ(modes.Size(), 12);
+  EXPECT_LT((modes.Vectors() * modes.Values().asDiagonal() *
+                 modes.Vectors().transpose() -
+             g * g.transpose())
+                .norm(),
+            1e-12 * g.squaredNorm());
+  const Eigen::MatrixXd shifted =
+      Eigen::MatrixXd::Identity(40, 40) + 1e4 * g * g.transpose();
+  EXPECT_NEAR(
+      modes.LogDeterminant(1e4),
+      shifted.partialPivLu().matrixLU().diagonal().array().abs().log().sum(),
+      1e-6);
+}
+
 }  // namespace
 }  // namespace elastimate
