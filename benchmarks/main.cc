@@ -17,6 +17,7 @@
 #include "apps/progress.h"
 #include "benchmarks/kernels.h"
 #include "benchmarks/large_deformation_study.h"
+#include "benchmarks/maps_study.h"
 #include "benchmarks/materials_study.h"
 #include "benchmarks/measurement_study.h"
 #include "benchmarks/metadata.h"
@@ -61,6 +62,7 @@ constexpr NamedStudy kStudies[] = {
      RunMaterialsStudy},
     {"large_deformation", "what bending and stretch do to the estimate",
      RunLargeDeformationStudy},
+    {"maps", "how well the modulus of every element is found", RunMapsStudy},
 };
 
 const Program& Benchmark() {

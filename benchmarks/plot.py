@@ -815,12 +815,67 @@ def large_deformation_cells(path):
     }
 
 
+# ---------------------------------------------------------------------------
+# Maps of a modulus.
+
+MAP_STYLES = {
+    "local": STYLES["closed-form"],
+    "smooth": STYLES["reduced-fe order 2"],
+    "sharpened": STYLES["reduced-fe"],
+    "regions": STYLES["virtual-fields"],
+    "verdict": STYLES["auto"],
+}
+
+
+def maps_stages(path):
+    figure, panels = two_panels()
+    for axes, ((specimen,), own) in zip(panels, group(read(path), "specimen").items()):
+        for (stage,), rows in group(own, "stage").items():
+            cells = group(rows, DEVIATION)
+            axes.plot([100 * float(key[0]) for key in cells],
+                      [np.median(numbers(cell, "error [1]")) for cell in cells.values()],
+                      label=stage, **MAP_STYLES[stage])
+        axes.axhline(1, color="#888888", linewidth=0.8)
+        axes.set(xscale="log", yscale="log", xlabel="noise of the displacements [%]",
+                 ylabel="error of ln E over its variation", title=specimen)
+    finish(figure, "Maps of E on 16 x 16 quadrilaterals: the error of each stage (medians)",
+           columns=5)
+    return figure
+
+
+def maps_contrast(path):
+    figure, axes = plt.subplots(figsize=(5, 3.4))
+    styles = ("reduced-fe", "virtual-fields", "closed-form")
+    for ((noise,), rows), name in zip(group(read(path), DEVIATION).items(), styles):
+        axes.plot(numbers(rows, "diameter_over_resolution_length [1]"),
+                  numbers(rows, "part_of_contrast [1]"),
+                  label=f"noise {100 * float(noise):g} %", **{**STYLES[name], "linestyle": ""})
+    axes.axvline(3, color="#888888", linewidth=0.8)
+    axes.set(xscale="log", xlabel="diameter over resolution length",
+             ylabel="part of the contrast in ln E")
+    finish(figure, "What a smooth map shows of an inclusion of contrast 5", columns=3)
+    return figure
+
+
+def maps_time(path):
+    figure, axes = plt.subplots(figsize=(5, 3.4))
+    styles = ("reduced-fe", "virtual-fields", "closed-form")
+    for ((elements,), rows), name in zip(group(read(path), "elements [1]").items(), styles):
+        axes.plot(numbers(rows, "supported_parameters [1]"), numbers(rows, "time [s]"),
+                  label=f"{elements} elements", **STYLES[name])
+    axes.set(xscale="log", yscale="log", xlabel="parameters that the data support",
+             ylabel="processor time of a smooth map [s]")
+    finish(figure, "Noise of 10 % (left) to 0.1 % (right)", columns=3)
+    return figure
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
                      paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
                      stability_cells, unseen_cells, unseen_regret, measurement_cells,
-                     materials_cells, large_deformation_bias, large_deformation_cells)
+                     materials_cells, large_deformation_bias, large_deformation_cells,
+                     maps_stages, maps_contrast, maps_time)
 }
 
 

@@ -1,0 +1,239 @@
+#include "benchmarks/maps_study.h"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "benchmarks/processor_time.h"
+#include "benchmarks/trial.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/estimators/force_balance/local_map.h"
+#include "elastimate/estimators/maps/estimate_map.h"
+#include "elastimate/estimators/maps/field_prior.h"
+#include "elastimate/estimators/maps/field_sensitivity.h"
+#include "elastimate/estimators/maps/level_fit.h"
+#include "elastimate/estimators/maps/map_errors.h"
+#include "elastimate/estimators/maps/region_map.h"
+#include "elastimate/estimators/maps/sharpen_map.h"
+#include "elastimate/estimators/maps/smooth_map.h"
+#include "elastimate/io/examples/example_scenes.h"
+
+namespace elastimate {
+namespace {
+
+constexpr int kCells = 16;
+constexpr int kMapTrials = 3;
+constexpr double kInclusionRadius = 0.2;
+constexpr double kContrast = 5;
+constexpr double kPoissonRatioOfMaps = 0.3;
+
+using LogModulus = std::function<double(const Eigen::Vector2d&)>;
+
+struct MapSpecimen {
+  Scene scene;
+  Eigen::VectorXd log_moduli;
+};
+
+// Returns a unit square that is held at x = 0 and pulled, without noise.
+MapSpecimen Specimen(int cells, const LogModulus& log_modulus) {
+  RectangleOptions options;
+  options.cells = {cells, cells};
+  options.size = {1, 1};
+  options.force = {1, -0.2};
+  options.section = {SectionModel::kPlaneStrain, 1};
+  MapSpecimen specimen;
+  specimen.scene = RectangleScene(options);
+  const Mesh& mesh = specimen.scene.mesh;
+  const Eigen::Index n = mesh.NumElements();
+  specimen.log_moduli.resize(n);
+  Eigen::VectorXd parameters(2 * n);
+  for (Eigen::Index e = 0; e < n; ++e) {
+    specimen.log_moduli(e) = log_modulus(ElementCentre(mesh, e));
+    parameters.segment<2>(2 * e) << std::exp(specimen.log_moduli(e)),
+        kPoissonRatioOfMaps;
+  }
+  Scene truth = WithMaterialOfEachElement(specimen.scene);
+  MeasureMaterials(parameters, truth);
+  specimen.scene.load_cases[0].displacement = truth.load_cases[0].displacement;
+  specimen.scene.origin = Origin::kComputed;
+  return specimen;
+}
+
+bool IsInInclusion(const Eigen::Vector2d& point, double radius) {
+  return (point - Eigen::Vector2d(0.5, 0.5)).norm() < radius;
+}
+
+LogModulus Inclusion(double radius) {
+  return [radius](const Eigen::Vector2d& point) {
+    return IsInInclusion(point, radius) ? std::log(kContrast) : 0;
+  };
+}
+
+double Gradient(const Eigen::Vector2d& point) {
+  return std::log(3.0) * (point.y() - 0.5) +
+         0.3 * std::sin(2 * M_PI * point.x());
+}
+
+double ErrorOfMap(const Eigen::VectorXd& log_moduli,
+                  const MapSpecimen& specimen) {
+  const Eigen::VectorXd& truth = specimen.log_moduli;
+  const Eigen::VectorXd deviations = log_moduli - truth;
+  return (deviations.array() - deviations.mean()).matrix().norm() /
+         (truth.array() - truth.mean()).matrix().norm();
+}
+
+// A smooth map of a measurement, from which the later stages go on.
+class MapRun {
+ public:
+  explicit MapRun(const Scene& scene)
+      : model_(scene, SolverKind::kCholesky), prior_(scene.mesh) {
+    const double start = ProcessorSeconds();
+    homogeneous_ =
+        FitLevels(problem_, std::vector<int>(prior_.NumElements(), 0),
+                  Eigen::VectorXd::Zero(1), kPoissonRatioOfMaps);
+    if (!homogeneous_) {
+      throw std::runtime_error("no fit of a homogeneous square");
+    }
+    smooth_ = FitSmoothMap(problem_, prior_, *homogeneous_);
+    seconds_ = ProcessorSeconds() - start;
+  }
+
+  const SmoothMap& Smooth() const { return *smooth_; }
+  double Seconds() const { return seconds_; }
+  MapState Sharpened() { return SharpenMap(problem_, prior_, *smooth_); }
+  std::optional<RegionMap> Regions(const MapState& sharpened) {
+    return FitRegions(problem_, prior_, sharpened, *homogeneous_);
+  }
+  Eigen::VectorXd Lengths() const {
+    return ResolutionLengths(prior_, *smooth_);
+  }
+
+ private:
+  FieldSensitivity model_;
+  MapProblem problem_{model_, {}, {}};
+  FieldPrior prior_;
+  std::optional<LevelFit> homogeneous_;
+  std::optional<SmoothMap> smooth_;
+  double seconds_ = 0;
+};
+
+void AddStages(const std::string& specimen_name, const MapSpecimen& specimen,
+               double noise, std::int64_t seed, Table& table) {
+  const Scene scene = WithNoise(specimen.scene, noise, seed);
+  const auto add = [&](const std::string& stage, const Eigen::VectorXd& m,
+                       const std::string& verdict) {
+    table.AddRow(
+        {specimen_name, noise, seed, stage, ErrorOfMap(m, specimen), verdict});
+  };
+  add("local",
+      EstimateLocalMap(scene, {}).youngs_modulus.cwiseAbs().array().log(), "");
+  MapRun run(scene);
+  add("smooth", run.Smooth().state.log_moduli, "");
+  const MapState sharpened = run.Sharpened();
+  add("sharpened", sharpened.log_moduli, "");
+  if (const std::optional<RegionMap> regions = run.Regions(sharpened)) {
+    add("regions", regions->fit.state.log_moduli, "");
+  }
+  const MapEstimate map = EstimateMap(scene, {});
+  if (map.IsUsable()) {
+    add("verdict", map.youngs_modulus.array().log(),
+        std::string(MapVerdictName(map.verdict)));
+  }
+}
+
+Table StagesTable(bool is_quick, Progress& progress) {
+  Table table("maps_stages", {"specimen", "displacement_deviation [1]",
+                              "noise_seed", "stage", "error [1]", "verdict"});
+  const MapSpecimen inclusion = Specimen(kCells, Inclusion(kInclusionRadius));
+  const MapSpecimen gradient = Specimen(kCells, Gradient);
+  const std::vector<double> noises =
+      is_quick ? std::vector<double>{0.001, 0.01}
+               : std::vector<double>{0.0001, 0.001, 0.01, 0.03, 0.1};
+  for (const double noise : noises) {
+    progress.Show("maps: stages, noise " + std::to_string(noise));
+    for (std::int64_t seed = 1; seed <= (is_quick ? 1 : kMapTrials); ++seed) {
+      AddStages("inclusion", inclusion, noise, seed, table);
+      AddStages("gradient", gradient, noise, seed, table);
+    }
+  }
+  return table;
+}
+
+void AddContrast(double radius, double noise, std::int64_t seed, Table& table) {
+  const MapSpecimen specimen = Specimen(kCells, Inclusion(radius));
+  const MapRun run(WithNoise(specimen.scene, noise, seed));
+  const Eigen::VectorXd lengths = run.Lengths();
+  const Eigen::VectorXd& m = run.Smooth().state.log_moduli;
+  const Eigen::ArrayXd inside =
+      (specimen.log_moduli.array() > 0).cast<double>();
+  const double num_inside = inside.sum();
+  const double of_inside = (m.array() * inside).sum() / num_inside;
+  const double of_outside =
+      (m.array() * (1 - inside)).sum() / (double(m.size()) - num_inside);
+  const double length = (lengths.array() * inside).sum() / num_inside;
+  // A disc of as many elements.
+  const double diameter = std::sqrt(4 * num_inside / M_PI) / kCells;
+  table.AddRow({diameter, noise, seed, length, diameter / length,
+                (of_inside - of_outside) / std::log(kContrast)});
+}
+
+Table ContrastTable(bool is_quick, Progress& progress) {
+  Table table("maps_contrast",
+              {"diameter [1]", "displacement_deviation [1]", "noise_seed",
+               "resolution_length [1]", "diameter_over_resolution_length [1]",
+               "part_of_contrast [1]"});
+  progress.Show("maps: contrast");
+  for (const double radius : {0.07, 0.1, 0.15, 0.2, 0.3}) {
+    for (const double noise : {0.001, 0.01, 0.05}) {
+      for (std::int64_t seed = 1; seed <= (is_quick ? 1 : kMapTrials); ++seed) {
+        AddContrast(radius, noise, seed, table);
+      }
+    }
+  }
+  return table;
+}
+
+Table TimeTable(bool is_quick, Progress& progress) {
+  Table table("maps_time",
+              {"elements [1]", "displacement_deviation [1]",
+               "supported_parameters [1]", "modes [1]", "time [s]"});
+  const std::vector<int> sizes =
+      is_quick ? std::vector<int>{8, 16} : std::vector<int>{16, 32, 48};
+  for (const int cells : sizes) {
+    const MapSpecimen specimen = Specimen(cells, Inclusion(kInclusionRadius));
+    for (const double noise : {0.001, 0.003, 0.01, 0.03, 0.1}) {
+      progress.Show("maps: time, " + std::to_string(cells * cells) +
+                    " elements");
+      const MapRun run(WithNoise(specimen.scene, noise, 1));
+      table.AddRow({std::int64_t{cells} * cells, noise,
+                    run.Smooth().effective_number,
+                    std::int64_t{run.Smooth().modes.Size()}, run.Seconds()});
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+StudyResult RunMapsStudy(bool is_quick, Progress& progress) {
+  return {{StagesTable(is_quick, progress), ContrastTable(is_quick, progress),
+           TimeTable(is_quick, progress)},
+          {{"square",
+            "1 x 1 in plane strain, of 16 x 16 quadrilaterals unless the table "
+            "says otherwise, held at x = 0, with the force (1, -0.2) on the "
+            "other end; nu = 0.3, estimated"},
+           {"inclusion",
+            "E = 5 in a disc about the middle, of the radius 0.2 unless the "
+            "table says otherwise, E = 1 around it"},
+           {"gradient", "ln E = ln 3 (y - 0.5) + 0.3 sin 2 pi x"},
+           {"noise", "uniform, at all nodes"},
+           {"noise_seeds", "1 to the number of trials; in maps_time 1"}}};
+}
+
+}  // namespace elastimate
