@@ -8,7 +8,7 @@ packages=(
   libhwy-dev libnanoflann-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
   nlohmann-json3-dev libpugixml-dev libcsv-dev libvtk9-dev libgmsh-dev
   petsc-dev pkg-config
-  pybind11-dev python3-dev python3-numpy python3-matplotlib python3-setuptools python3-pytest python3-pip mypy
+  help2man pybind11-dev python3-dev python3-numpy python3-matplotlib python3-setuptools python3-pytest python3-pip mypy
 )
 
 # The page of `elastimate report` is bundled by npm, of Debian or another one.

@@ -106,6 +106,18 @@ Eigen::Vector3d TensileDisplacement(const Eigen::Vector3d& x) {
          (10 / kTensileModulus);
 }
 
+// The displacements of nodes with numbers from 10 on.
+std::string TensileTable(const Eigen::Matrix3Xd& nodes) {
+  std::ostringstream table;
+  table.precision(17);
+  table << "node,ux,uy,uz\n";
+  for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+    const Eigen::Vector3d u = TensileDisplacement(nodes.col(i));
+    table << 10 + i << "," << u(0) << "," << u(1) << "," << u(2) << "\n";
+  }
+  return table.str();
+}
+
 std::string AbaqusText(const MixedBlock& block) {
   std::ostringstream text;
   text << "*NODE\n";
@@ -148,14 +160,7 @@ TEST(MixedMeshes, OfAbaqusAreEstimatedWithTheirSurfaces) {
   const TemporaryFolder folder;
   const MixedBlock block(5);
   folder.Write("mesh.inp", AbaqusText(block));
-  std::ostringstream table;
-  table.precision(17);
-  table << "node,ux,uy,uz\n";
-  for (Eigen::Index i = 0; i < block.nodes.cols(); ++i) {
-    const Eigen::Vector3d u = TensileDisplacement(block.nodes.col(i));
-    table << 10 + i << "," << u(0) << "," << u(1) << "," << u(2) << "\n";
-  }
-  folder.Write("nodes.csv", table.str());
+  folder.Write("nodes.csv", TensileTable(block.nodes));
   const SceneReading reading = ReadScene({folder.Write("scene.json", R"({
         "mesh": "mesh.inp",
         "supports": [
@@ -282,14 +287,7 @@ TEST(MixedMeshes, OfQuadraticElementsAreEstimated) {
   const TemporaryFolder folder;
   const QuadraticBlock block(0);
   folder.Write("mesh.inp", block.Text());
-  std::ostringstream table;
-  table.precision(17);
-  table << "node,ux,uy,uz\n";
-  for (Eigen::Index i = 0; i < block.nodes.cols(); ++i) {
-    const Eigen::Vector3d u = TensileDisplacement(block.nodes.col(i));
-    table << 10 + i << "," << u(0) << "," << u(1) << "," << u(2) << "\n";
-  }
-  folder.Write("nodes.csv", table.str());
+  folder.Write("nodes.csv", TensileTable(block.nodes));
   const Scene scene = ReadScene({folder.Write("scene.json", R"({
         "mesh": "mesh.inp",
         "supports": [
