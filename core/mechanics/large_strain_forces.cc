@@ -166,8 +166,10 @@ class ElementBatch {
   // Smooths the dilatation by the constant 1 and, in elements of order 2, by
   // the coordinates as well.
   void SmoothDilatation() {
-    ElementPoints points = {kDimension, NumPoints(), points_per_element_,
-                            {},         {},          1};
+    ElementPoints points;
+    points.dimension = kDimension;
+    points.num_points = NumPoints();
+    points.per_element = points_per_element_;
     for (int p = 0; p < NumPoints(); ++p) {
       points.volumes.row[0][p] = points_[p].volume;
       points.polynomials.row[0][p] = 1;

@@ -13,13 +13,13 @@ using PointNumbers = PointValues<1>;
 /// The points of some elements: those of the first element, then those of the
 /// second, and so on, as many for each.
 struct ElementPoints {
+  PointNumbers volumes = {};  ///< v; zero behind the points.
+  /// The polynomials that smooth the dilatation: 1, and further ones.
+  PointValues<4> polynomials = {};
+  int num_polynomials = 1;
   int dimension;  ///< In the plane, only F_33 = 1 and entries in the plane.
   int num_points;
   int per_element;
-  PointNumbers volumes;  ///< v; zero behind the points.
-  /// The polynomials that smooth the dilatation: 1, and further ones.
-  PointValues<4> polynomials;
-  int num_polynomials;
 };
 
 /// The smoothed dilatation of some elements (LargeStrainForces): Fbar = s F
