@@ -311,6 +311,7 @@ class GmshCells {
   std::vector<int> NodesOf(const Cell& cell, int count,
                            const Numbering& nodes) const {
     std::vector<int> positions;
+    positions.reserve(std::size_t(count));
     for (int i = 0; i < count; ++i) {
       positions.push_back(NodePosition(
           path_, nodes,

@@ -40,6 +40,7 @@ class MiddleNodesOfCells {
     std::vector<int> around(vertices, vertices + cell.shape->num_vertices);
     for (const std::vector<int>& places : cell.shape->faces) {
       std::vector<int> face;
+      face.reserve(places.size());
       for (const int place : places) {
         face.push_back(cell.nodes[place]);
       }

@@ -98,6 +98,7 @@ std::size_t Simplices::Add(const CellShape& shape,
   const std::size_t before = cells_.size();
   for (const std::vector<int>& places : shape.faces) {
     std::vector<int> face;
+    face.reserve(places.size());
     for (const int place : places) {
       face.push_back(nodes[place]);
     }
