@@ -14,6 +14,7 @@
 #include "elastimate/estimators/interface/kinematic_error.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
+#include "elastimate/estimators/material_fit/refined_fit.h"
 
 namespace elastimate {
 namespace {
@@ -158,17 +159,29 @@ class LargeStrainFits {
   }
 
   LawFit Fit(const std::string& law,
-             const std::optional<Eigen::VectorXd>& start, Refine refinement) {
+             const std::optional<Eigen::VectorXd>& start) {
     scene_.materials = MaterialsOfLargeStrains(scene_.materials, law);
-    options_.refinement = refinement;
-    MaterialFit fit = FitMaterialsFrom(start, scene_, options_, Descent::kFull);
-    work_ = work_ + fit.estimate.work;
-    const double square_sum = SquaredNorm(fit.errors.residual);
-    return {law, std::move(fit), square_sum};
+    return Enter(law,
+                 FitMaterialsFrom(start, scene_, options_, Descent::kFull));
+  }
+  // Fits to compare with other laws, without what they have in common.
+  LawFit FitToCompare(const std::string& law,
+                      const std::optional<Eigen::VectorXd>& start) {
+    scene_.materials = MaterialsOfLargeStrains(scene_.materials, law);
+    EstimatorOptions options = options_;
+    options.refinement = Refine::kNever;
+    return Enter(law, FitRefined(scene_, options, Descent::kFull, start,
+                                 MisfitCurvature::kIgnored));
   }
   const Work& WorkDone() const { return work_; }
 
  private:
+  LawFit Enter(const std::string& law, MaterialFit fit) {
+    work_ = work_ + fit.estimate.work;
+    const double square_sum = SquaredNorm(fit.errors.residual);
+    return {law, std::move(fit), square_sum};
+  }
+
   Scene scene_;
   EstimatorOptions options_;
   Work work_;
@@ -203,24 +216,25 @@ Estimate FitLargeStrainLaws(const Scene& scene,
   const bool are_compared = size.strain > kLimits.mentioned_strain / 2;
   // Finer elements change the fits of all laws by about as much, so only the
   // best law is fitted on them.
-  const bool is_divided_last = are_compared &&
-                               scene.origin == Origin::kMeasured &&
-                               options.refinement != Refine::kNever;
-  const Refine first = is_divided_last ? Refine::kNever : options.refinement;
+  const bool is_refined_last =
+      are_compared && scene.origin == Origin::kMeasured;
+  const auto fit = [&](const char* law,
+                       const std::optional<Eigen::VectorXd>& start) {
+    return is_refined_last ? all.FitToCompare(law, start) : all.Fit(law, start);
+  };
   std::vector<LawFit> fits;
-  fits.push_back(all.Fit(kRotated, std::nullopt, first));
+  fits.push_back(fit(kRotated, std::nullopt));
   const std::optional<Eigen::VectorXd> start = fits[0].fit.Variables();
   if (start && are_compared) {
     for (const char* const law : kStretched) {
-      fits.push_back(all.Fit(law, start, first));
+      fits.push_back(fit(law, start));
     }
   }
   const std::vector<LawFit> candidates = UsableFits(fits);
   const LawFit& best = candidates[0];
-  Estimate estimate = is_divided_last ? all.Fit(best.law, best.fit.Variables(),
-                                                options.refinement)
-                                            .fit.estimate
-                                      : best.fit.estimate;
+  Estimate estimate = is_refined_last
+                          ? all.Fit(best.law, best.fit.Variables()).fit.estimate
+                          : best.fit.estimate;
   estimate.large_strain_law = best.law;
   if (are_compared && start && estimate.IsUsable()) {
     AddSpread(candidates,

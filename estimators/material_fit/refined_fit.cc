@@ -83,7 +83,8 @@ class Refinement {
         descent_(descent),
         neighbours_(scene.mesh) {}
 
-  MaterialFit Fit(const std::optional<Eigen::VectorXd>& start);
+  MaterialFit Fit(const std::optional<Eigen::VectorXd>& start,
+                  MisfitCurvature curvature);
 
  private:
   /// The second fit and, where the mesh is divided, the third, with what
@@ -305,7 +306,8 @@ Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
   return std::move(best);
 }
 
-MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
+MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
+                            MisfitCurvature curvature) {
   std::optional<Eigen::VectorXd> last = start;
   Work work;
   if (scene_.mesh.Order() == 1) {
@@ -336,7 +338,9 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   }
   if (chain.Finest().Fit().minimum) {
     // A divided mesh would hardly change the curvature.
-    Describe(chain, chain.quadratic.get());
+    Describe(chain, curvature == MisfitCurvature::kConsidered
+                        ? chain.quadratic.get()
+                        : nullptr);
   }
   MaterialFit fit = chain.Finest().Fit();
   fit.has_rival_axis = has_rival_axis_;
@@ -360,8 +364,9 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
 
 MaterialFit FitRefined(const Scene& scene, const EstimatorOptions& options,
                        Descent descent,
-                       const std::optional<Eigen::VectorXd>& start) {
-  return Refinement(scene, options, descent).Fit(start);
+                       const std::optional<Eigen::VectorXd>& start,
+                       MisfitCurvature curvature) {
+  return Refinement(scene, options, descent).Fit(start, curvature);
 }
 
 }  // namespace elastimate

@@ -10,6 +10,9 @@
 
 namespace elastimate {
 
+/// Whether errors contain the curvature of the misfit.
+enum class MisfitCurvature { kConsidered, kIgnored };
+
 /// The fit of a measured scene, whose specimen is no assembly of its elements.
 /// The parameters are fitted with finer and finer elements, each fit started at
 /// the last one:
@@ -40,10 +43,15 @@ namespace elastimate {
 /// have the same effect, the difference of both is an error instead.  Where
 /// motions are unknown or bounds are given, nothing tells.
 ///
+/// The curvature of the misfit bends intervals and adds to errors.  At large
+/// strains, to look at it takes more factorisations than the fit, which a fit
+/// that is only compared with others can do without.
+///
 /// Preconditions are those of Estimator::Run; the supports hold the specimen.
-MaterialFit FitRefined(const Scene& scene, const EstimatorOptions& options,
-                       Descent descent,
-                       const std::optional<Eigen::VectorXd>& start);
+MaterialFit FitRefined(
+    const Scene& scene, const EstimatorOptions& options, Descent descent,
+    const std::optional<Eigen::VectorXd>& start,
+    MisfitCurvature curvature = MisfitCurvature::kConsidered);
 
 }  // namespace elastimate
 
