@@ -222,13 +222,27 @@ class Conversion {
   }
 
   ElementKind TheOneKind() const {
+    for (const NumberedElement* element : chosen_) {
+      const NumberedType& type = TypeOf(*element);
+      if (!type.kind && !type.mend.empty()) {
+        ThrowInputError(mesh_.path, "element " +
+                                        std::to_string(element->number) +
+                                        " is of type " + Printable(type.name) +
+                                        ", " + type.mend);
+      }
+    }
     const NumberedType& first = TypeOf(*chosen_[0]);
     for (const NumberedElement* element : chosen_) {
       const NumberedType& type = TypeOf(*element);
       const std::string is_of = "element " + std::to_string(element->number) +
                                 " is of type " + Printable(type.name);
-      if (!type.kind && !type.mend.empty()) {
-        ThrowInputError(mesh_.path, is_of + ", " + type.mend);
+      if (type.Cell() != nullptr && type.Order() != first.Order()) {
+        ThrowInputError(mesh_.path,
+                        is_of + ", which is " +
+                            (type.Order() == 2 ? "quadratic" : "linear") +
+                            ", but others are " +
+                            (type.Order() == 2 ? "linear" : "quadratic") +
+                            "; mesh the specimen with elements of one order");
       }
       if (!type.kind || type.kind != first.kind) {
         ThrowInputError(mesh_.path,

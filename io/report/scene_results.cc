@@ -214,6 +214,8 @@ Scene WithFittedSupports(Scene scene, const Eigen::MatrixXd& fitted) {
         supports.displacement);
     supports.unknown.resize(0, 0);
     supports.rigid_faces.clear();
+    // Boxes say where nodes would be if nothing had moved.
+    supports.boxes.clear();
     scene.load_cases[k].supports = supports;
   }
   return scene;

@@ -76,7 +76,7 @@ export function residualSection(data, specimen) {
         {},
         html("h3", {}, "How large"),
         histogram(components.map(({ value }) => value), data.report.noise_sd),
-        html("p", { class: "note" }, "Bars: residuals. Line: what noise alone would leave. Taller ends are outliers or a wrong model."),
+        html("p", { class: "note" }, "Bars: residuals. Line: what noise alone would leave. Bars far above the line at the ends are outliers or a wrong model; the last bars hold all values beyond."),
       ),
       html(
         "div",

@@ -8,6 +8,9 @@ const free = (parameters) => parameters.filter((parameter) => !parameter.known);
 function valuesSentence({ report, parameters }) {
   if (isMean(report)) {
     const { verdict, regions } = report.map;
+    if (verdict === "elements") {
+      return "Each element has a modulus of its own, which the map below shows.";
+    }
     return verdict === "field"
       ? "The stiffness of the specimen varies smoothly: the map below shows Young's modulus E of each part."
       : `The specimen has ${counted(regions.length, "region")} of different stiffness: Young's modulus E is ` +
@@ -58,7 +61,7 @@ function trustSentence({ report, parameters }) {
   const cause = first
     ? `; most of the error of ${known[0].label} comes from ${first.words}${relative ? ` (${percent(first.size)})` : ""}`
     : "";
-  return `With a probability of 95 %, ${listOf(ranges)}${cause}.`;
+  return `Each with a probability of 95 %, ${listOf(ranges)}${cause}.`;
 }
 
 function fitSentence({ report }) {

@@ -40,10 +40,12 @@ export function mapSection({ map }) {
     homogeneous: "The measurement does not tell any part of the specimen from another: one material.",
     regions: `The specimen has ${map.regions.length} regions.`,
     field: "The stiffness varies smoothly over the specimen.",
+    elements: "Each element has a modulus of its own, by the balance of forces alone. It has no standard error.",
   };
+  // There is none where each element has a modulus of its own.
   const evidence = ({ regions, field }) =>
-    `The data support ${numberText(map.supported_parameters, 3)} of ${map.elements} parameters. Logarithm of the evidence ` +
-    `over one material: ${numberText(regions, 3)} for regions, ${numberText(field, 3)} for a field (3 is twenty to one).`;
+    regions === null ? "" : `The data support ${numberText(map.supported_parameters, 3)} of ${map.elements} parameters. Logarithm of the evidence ` +
+    `over one material: ${numberText(regions, 3)} for regions, ${numberText(field, 3)} for a field (from 3 on, the odds against one material are 20 to 1).`;
   const rows = map.regions.map((region, i) => [
     `${i + 1}`,
     valueWithError(region.youngs_modulus, region.standard_error ?? 0),
@@ -88,7 +90,7 @@ export function materialsSection({ materials, combinations, merges, laws }) {
     materials.length === 0 ? null : table(["material", "by the data", "of the strain energy", "residuals"], materials.map(verdictRow), [2]),
     combinations.map((combination) => html("p", {}, `Determined only: ${combination}.`)),
     merged.length === 0 ? null : table(["regions", "verdict", "chi²", "limit"], merged, [2, 3]),
-    compared.length === 0 ? null : table(["law", "parameters", "chi²", "BIC"], compared, [1, 2, 3]),
+    compared.length === 0 ? null : table(["law", "parameters", "chi² above the least", "BIC above the least"], compared, [1, 2, 3]),
   );
 }
 

@@ -20,20 +20,25 @@ class ResultFieldsOfPlanes : public testing::ProgramTest {
  protected:
   void SetUp() override {
     testing::ProgramTest::SetUp();
+    WritePoints(0);
+  }
+
+  // Measures with a camera that has moved to the left.
+  void WritePoints(double shift) const {
     std::ostringstream text;
     text << std::setprecision(17) << "x,y,ux,uy\n";
     for (int i = 0; i <= 12; ++i) {
       for (int j = 0; j <= 4; ++j) {
-        text << 0.5 * i << "," << 0.5 * j << "," << 1.5e-3 * 0.5 * i << ","
-             << -0.25 * 1.5e-3 * 0.5 * j << "\n";
+        text << 0.5 * i << "," << 0.5 * j << "," << shift + 1.5e-3 * 0.5 * i
+             << "," << -0.25 * 1.5e-3 * 0.5 * j << "\n";
       }
     }
     testing::WriteText(folder_ / "points.csv", text.str());
   }
 
-  MeshFile FieldsOf(const std::string& supports,
-                    const std::string& load) const {
-    testing::WriteText(folder_ / "scene.json", R"({
+  MeshFile FieldsOf(const std::string& supports, const std::string& load,
+                    const std::string& more = "") const {
+    testing::WriteText(folder_ / "scene.json", "{" + more + R"(
       "model": "plane_stress", "thickness": 0.5,
       "mesh": {"points": "points.csv", "margin": 0},
       "supports": [)" + supports + R"(],
@@ -77,6 +82,21 @@ TEST_F(ResultFieldsOfPlanes, AreRightForSupportsThatDidNotMove) {
       R"({"nodes": {"box": [[0, 0], [0, 2]]}, "components": "x"},
          {"nodes": {"box": [[0, 0], [0, 0]]}, "components": "y"})",
       R"({"type": "force", "value": [3, 0])"));
+}
+
+// The box says that its nodes stayed where they were, but the camera moved.
+TEST_F(ResultFieldsOfPlanes, AreRightForACameraThatMoved) {
+  WritePoints(5);
+  const MeshFile fields = FieldsOf(
+      R"({"nodes": {"box": [[0, 0], [0, 2]]}, "components": "xy"})",
+      R"({"type": "force", "value": [3, 0])", R"("rigid_motion": "free",)");
+  const Eigen::MatrixXd& residual =
+      *FindArray(fields.node_arrays, "displacement_residual");
+  EXPECT_LT(residual.norm(), 0.01);
+  const Eigen::MatrixXd& reaction =
+      *FindArray(fields.node_arrays, "reaction_force");
+  EXPECT_NEAR(reaction.row(0).sum(), -3, 1e-6);
+  EXPECT_LT(reaction.cwiseAbs().maxCoeff(), 3);
 }
 
 class ResultFieldsOfLargeStrains : public testing::ProgramTest {};

@@ -284,11 +284,11 @@ TEST_F(AbaqusMeshTest, RefusesWhatIsNotForScenes) {
                               "*ELEMENT, TYPE=C3D27\n7, 1,2,3,4\n*NSET")),
               HasSubstr("element 7 is of type C3D27, but the elements of a "
                         "scene are"));
-  EXPECT_THAT(
-      WhyNot(Replaced(text, "*NSET",
-                      "*ELEMENT, TYPE=C3D10\n"
-                      "9, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5\n*NSET")),
-      HasSubstr("element 9 is of type C3D10, but others are of type C3D4"));
+  EXPECT_THAT(WhyNot(Replaced(text, "*NSET",
+                              "*ELEMENT, TYPE=C3D10\n"
+                              "9, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5\n*NSET")),
+              HasSubstr("element 9 is of type C3D10, which is quadratic, but "
+                        "others are linear"));
   EXPECT_THAT(WhyNot(Replaced(text, "*NSET",
                               "*ELEMENT, TYPE=C3D8\n"
                               "9, 1, 2, 3, 4, 5, 1, 2, 3\n*NSET")),
