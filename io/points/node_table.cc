@@ -94,12 +94,14 @@ class NodeTableReader {
       : path_(path), dimension_(dimension) {}
 
   void Read(std::string_view line, std::size_t number) {
+    const bool is_whole = !line.empty() && line.back() == '\n';
+    line.remove_suffix(is_whole ? 1 : 0);
     line = Trimmed(line);
     if (line.empty()) {
       // Blank lines end a table.
       columns_ = has_rows_ ? std::nullopt : columns_;
     } else if (!ReadTitles(line) && columns_) {
-      ReadRow(line, number);
+      ReadRow(line, number, is_whole);
     }
   }
 
@@ -172,18 +174,24 @@ class NodeTableReader {
     }
   }
 
-  void ReadRow(std::string_view line, std::size_t at) {
+  void ReadRow(std::string_view line, std::size_t at, bool is_whole) {
     const Cells cells = Split(line, separators_);
     if (columns_->number >= cells.size()) {
       return;
     }
-    const std::optional<std::size_t> number =
-        ParsedNumber<std::size_t>(cells[columns_->number]);
+    const std::string_view first = cells[columns_->number];
+    const std::optional<std::size_t> number = ParsedNumber<std::size_t>(first);
     if (!number) {
-      if (!separators_.empty()) {
-        Fail(at, cells[columns_->number], "no number of a node");
+      if (!separators_.empty() || ParsedNumber<double>(first)) {
+        Fail(at, first, "no number of a node");
       }
       return;  // A line below the titles, such as a rule.
+    }
+    // Programs end each line; tables without separators are theirs.
+    if (!is_whole && separators_.empty()) {
+      ThrowInputError(path_, "line " + std::to_string(at) +
+                                 ": the file is cut, because its last line has "
+                                 "no end; write the file again");
     }
     for (const std::size_t place : columns_->components) {
       const std::string_view cell =
@@ -238,9 +246,11 @@ NodeTable ReadNodeTable(const std::filesystem::path& path, int dimension) {
   NodeTableReader reader(path, dimension);
   std::string_view rest = text;
   for (std::size_t line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    reader.Read(rest.substr(0, end), line);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t newline = rest.find('\n');
+    const std::size_t size =
+        newline == std::string_view::npos ? rest.size() : newline + 1;
+    reader.Read(rest.substr(0, size), line);
+    rest.remove_prefix(size);
   }
   return reader.Take();
 }

@@ -95,6 +95,28 @@ TEST_F(NodeTableTest, ReadsTheLastStateOfCalculix) {
       "   5  7.E+00  7.E+00  7.E+00\n");
 }
 
+TEST_F(NodeTableTest, TellsThatAFileIsCut) {
+  const std::string whole =
+      " displacements (vx,vy,vz) for set ALL and time  0.1000000E+01\n\n"
+      "   5  0.500000E+00 -0.250000E+00  0.000000E+00\n"
+      "  12  1.000000E-03  2.000000E+00 -3.000000E+00\n";
+  ExpectTwoNodes(whole);
+  EXPECT_THROWS_WITH(Read(whole.substr(0, whole.size() - 3)),
+                     "u.txt: line 4: the file is cut");
+  EXPECT_THROWS_WITH(Read(whole.substr(0, whole.size() - 1)),
+                     "u.txt: line 4: the file is cut");
+  // People leave out the end of the last line.
+  ExpectTwoNodes("node,ux,uy,uz\n5,0.5,-0.25,0\n12,1e-3,2,-3");
+}
+
+TEST_F(NodeTableTest, RefusesNumbersThatAreNoNumbersOfNodes) {
+  const std::string title = "displacements (vx,vy,vz) for set ALL and time 1\n";
+  EXPECT_THROWS_WITH(Read(title + " 5 1 2 3\n -12 1 2 3\n"),
+                     "u.txt: line 3: '-12' is no number of a node");
+  EXPECT_THROWS_WITH(Read("node ux uy uz\n5 1 2 3\n1.5 1 2 3\n"),
+                     "line 3: '1.5' is no number of a node");
+}
+
 TEST_F(NodeTableTest, NeedsTwoComponentsInThePlane) {
   const NodeTable table = Read("node ux uy\n7 1 2\n", 2);
   EXPECT_EQ(table.displacement, Eigen::Vector2d(1, 2));
