@@ -16,6 +16,7 @@
 #include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/bounding_box.h"
 #include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/io/report/summary_lines.h"
@@ -96,6 +97,27 @@ std::string Measured(const Mesh& mesh, const LoadCase& load_case) {
                              : "");
 }
 
+// Adds the force on components that supports hold, which changes nothing.
+void AddForceOnSupports(const Scene& scene, std::size_t load_case,
+                        const std::string& of_case, std::ostringstream& text) {
+  constexpr double kRounding = 1e-12;  // Relative to the largest force.
+  const Eigen::MatrixXd force =
+      AssembleLoads(scene.mesh, scene.load_cases[load_case].loads);
+  const Eigen::MatrixXd on_held =
+      SupportsOf(scene, Eigen::Index(load_case)).held.select(force, 0.0);
+  const double rounding = kRounding * force.cwiseAbs().maxCoeff();
+  const Eigen::Index num_nodes =
+      (on_held.array().abs() > rounding).colwise().any().count();
+  if (num_nodes > 0) {
+    AddLine("force on supports" + of_case,
+            VectorText(on_held.rowwise().sum(), rounding) +
+                " of the loads is on " +
+                Counted(std::size_t(num_nodes), "node") +
+                " held in its direction, where it deforms nothing",
+            text);
+  }
+}
+
 void AddLoadCases(const Scene& scene, std::ostringstream& text) {
   constexpr std::size_t kMany = 8;
   const std::size_t count = scene.load_cases.size();
@@ -106,6 +128,7 @@ void AddLoadCases(const Scene& scene, std::ostringstream& text) {
     if (load_case.supports) {
       AddSupports("supports" + of_case, *load_case.supports, text);
     }
+    AddForceOnSupports(scene, i, of_case, text);
     AddLine("measured" + of_case, Measured(scene.mesh, load_case), text);
     for (const Resultant& resultant : load_case.resultants) {
       AddLine("resultant" + of_case,

@@ -18,17 +18,17 @@ namespace elastimate {
 SceneReading ReadMeasuredScene(const std::vector<std::string>& arguments) {
   SceneReading reading =
       ReadWithGapsChosen([&arguments](const std::vector<bool>& is_filled) {
-        return ReadScene(
-            {arguments.begin(), arguments.end()}, Measurement::kRequired,
-            {SectionFromFlags(), RegionsFromFlag(),
-             ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(), is_filled});
+        return ReadScene({arguments.begin(), arguments.end()},
+                         Measurement::kRequired,
+                         {SectionFromFlags(), RegionsFromFlag(),
+                          ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(),
+                          is_filled, OriginFromFlag()});
       });
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;
     }
   }
-  reading.scene.origin = OriginFromFlag().value_or(reading.scene.origin);
   return reading;
 }
 

@@ -89,10 +89,16 @@ int RunScene(const std::vector<std::string>& arguments) {
   }
   const FirstScene scene = SceneFromFlags();
   CheckOutputFlags(arguments, OutFormats::kJson);
+  const bool has_content = !scene.supports.empty() || !scene.loaded.empty();
+  if (!has_content && (IsGiven("out") || !scene.points.empty())) {
+    throw std::invalid_argument(
+        "a first scene needs what is held or loaded; give --support=NAME or "
+        "--force=NAME,X,Y,Z");
+  }
   const MeshFile mesh = ReadMeshFile(arguments[0]);
   std::string text = Contents(mesh);
   StagedFiles files;
-  if (!scene.supports.empty() || !scene.loaded.empty() || IsGiven("out")) {
+  if (has_content) {
     const std::filesystem::path file = OutputFile(arguments[0]);
     files.Add(file, FirstSceneText(file, mesh, scene));
     text += "written to " + PrintablePath(file) +

@@ -2,6 +2,8 @@
 #define ELASTIMATE_CORE_MESH_MESH_H_
 
 #include <Eigen/Core>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "elastimate/core/mesh/element_kind.h"
@@ -65,6 +67,17 @@ struct Mesh {
   /// Counts the vertices, which come before all other nodes.  O(num_elements)
   /// for quadratic elements.
   Eigen::Index NumVertices() const;
+};
+
+/// What ValidateMesh throws for one element.
+class InvalidElement : public std::invalid_argument {
+ public:
+  InvalidElement(Eigen::Index element, const std::string& sentence)
+      : std::invalid_argument(sentence), element_(element) {}
+  Eigen::Index Element() const { return element_; }
+
+ private:
+  Eigen::Index element_;
 };
 
 /// Throws std::invalid_argument, naming the node or the element, unless `mesh`

@@ -56,10 +56,12 @@ std::string MendOf(const std::string& name) {
            "plane strain; mesh the body itself (C3D10 or C3D8)";
   }
   const bool is_solid = DimensionOfType(name) == 3;
-  return "but the elements of a scene are " + std::string(kSupportedElements) +
-         "; in Abaqus/CAE, Mesh > Element Type makes it linear (" +
-         (is_solid ? "C3D8" : "CPS4, CPE4") + "), and Mesh > Controls makes " +
-         (is_solid ? "tetrahedra (C3D10)" : "triangles (CPS6, CPE6)");
+  return std::string("but the ") + (is_solid ? "solid" : "planar") +
+         " elements that are read are " +
+         (is_solid ? "C3D4, C3D5, C3D6, C3D8, C3D10, C3D15 and C3D20"
+                   : "CPS3, CPS4, CPS6, CPS8, CPE3, CPE4, CPE6 and CPE8") +
+         "; mesh the specimen with these (in Abaqus/CAE, Mesh > Element Type "
+         "and Mesh > Controls)";
 }
 
 }  // namespace

@@ -330,6 +330,10 @@ void SetSection(const NumberedMesh& numbered, double thickness,
         kNumberedModels.begin(), kNumberedModels.end(),
         has_stress ? SectionModel::kPlaneStress : SectionModel::kPlaneStrain);
     mesh.model = double(place - kNumberedModels.begin());
+  } else if (has_stress) {
+    mesh.why_no_model =
+        "some of its elements are in plane stress (CPS) and others in plane "
+        "strain (CPE), but a scene has one model";
   }
   if (thickness > 0) {
     mesh.thickness = thickness;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/io/mesh/cut_cells.h"
 #include "elastimate/io/mesh/numbering.h"
 #include "elastimate/io/mesh/simplices.h"
 #include "elastimate/io/text/input_error.h"
@@ -44,25 +45,40 @@ constexpr std::array<int, 27> kHexahedronInGmsh = {
     0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
     19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
 
-/// Returns the shape of an element of this type whose nodes are its vertices;
-/// null for others.
-const CellShape* FindGmshShape(int type) {
-  switch (type) {
-    case 2:
-      return FindCellShape(2, 3);
-    case 3:
-      return FindCellShape(2, 4);
-    case 4:
-      return FindCellShape(3, 4);
-    case 5:
-      return FindCellShape(3, 8);
-    case 6:
-      return FindCellShape(3, 6);
-    case 7:
-      return FindCellShape(3, 5);
-    default:
-      return nullptr;
+/// What an element may be cut as.
+struct GmshCell {
+  int type;
+  int dimension;
+  int num_vertices;
+  /// The places in Gmsh's element of the nodes in the middle of edges, in the
+  /// order of CellShape; empty in linear elements.
+  std::vector<int> middles;
+
+  const CellShape* Shape() const {
+    return FindCellShape(dimension, num_vertices);
   }
+  int NumNodes() const { return num_vertices + int(middles.size()); }
+};
+
+/// Returns null for elements of types that cannot be cut.
+const GmshCell* FindGmshCell(int type) {
+  static const std::vector<GmshCell> cells = {
+      {2, 2, 3, {}},
+      {3, 2, 4, {}},
+      {4, 3, 4, {}},
+      {5, 3, 8, {}},
+      {6, 3, 6, {}},
+      {7, 3, 5, {}},
+      {9, 2, 3, {3, 4, 5}},
+      {16, 2, 4, {4, 5, 6, 7}},
+      {11, 3, 4, {4, 5, 6, 7, 9, 8}},
+      {17, 3, 8, {8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15}},
+      {18, 3, 6, {6, 9, 7, 12, 14, 13, 8, 10, 11}},
+      {19, 3, 5, {5, 8, 10, 6, 7, 9, 11, 12}}};
+  const auto found =
+      std::find_if(cells.begin(), cells.end(),
+                   [&](const GmshCell& one) { return one.type == type; });
+  return found == cells.end() ? nullptr : &*found;
 }
 
 /// Returns null where elements of this type are not for scenes.
@@ -236,8 +252,47 @@ class GmshCells {
   void EnterElements(const Numbering& nodes, MeshFile& mesh) {
     if (are_cut_) {
       CutElements(nodes, mesh);
-      return;
+    } else {
+      CopyElements(nodes, mesh);
     }
+    for (std::size_t k = 0; k < cells_.size() && !are_cut_; ++k) {
+      mesh.element_numbers.push_back(NumberOf(cells_[k]));
+    }
+    for (const std::size_t k : cell_of_part_) {
+      mesh.element_numbers.push_back(NumberOf(cells_[k]));
+    }
+  }
+
+  /// Gives each element the column of its cell.
+  void SpreadOverParts(std::vector<FileArray>& arrays) const {
+    for (FileArray& array : arrays) {
+      if (are_cut_) {
+        array.values = Eigen::MatrixXd(array.values(Eigen::all, cell_of_part_));
+      }
+    }
+  }
+
+  /// Returns the name of the cell at a place, which is the first part of it
+  /// where cells are cut.
+  std::string NameOfElement(int place, const MeshFile& mesh) const {
+    return ElementName(mesh, !are_cut_ ? place
+                                       : std::lower_bound(cell_of_part_.begin(),
+                                                          cell_of_part_.end(),
+                                                          std::size_t(place)) -
+                                             cell_of_part_.begin());
+  }
+
+ private:
+  struct Cell {
+    std::size_t type;   // The place in elements_.
+    std::size_t place;  // Among those of the type.
+  };
+
+  std::size_t NumberOf(const Cell& cell) const {
+    return elements_.numbers[cell.type][cell.place];
+  }
+
+  void CopyElements(const Numbering& nodes, MeshFile& mesh) const {
     mesh.kind = FindGmshKind(TypeOf(cells_[0]))->kind;
     const int num_nodes = mesh.Topology().num_nodes;
     mesh.elements.resize(num_nodes, Eigen::Index(cells_.size()));
@@ -255,36 +310,24 @@ class GmshCells {
     }
   }
 
-  /// Gives each element the column of its cell.
-  void SpreadOverParts(std::vector<FileArray>& arrays) const {
-    for (FileArray& array : arrays) {
-      if (are_cut_) {
-        array.values = Eigen::MatrixXd(array.values(Eigen::all, cell_of_part_));
-      }
-    }
-  }
-
- private:
-  struct Cell {
-    std::size_t type;   // The place in elements_.
-    std::size_t place;  // Among those of the type.
-  };
-
   int TypeOf(const Cell& cell) const { return elements_.types[cell.type]; }
 
   std::string NameOf(const Cell& cell) const {
-    return "element number " +
-           std::to_string(elements_.numbers[cell.type][cell.place]) + " is a " +
+    return "element number " + std::to_string(NumberOf(cell)) + " is a " +
            ElementTypeName(TypeOf(cell));
   }
 
   /// Tells whether all may be cut into simplices, and are not of one kind
   /// otherwise.
   bool AreToBeCut() const {
-    return std::all_of(cells_.begin(), cells_.end(),
-                       [this](const Cell& cell) {
-                         return FindGmshShape(TypeOf(cell)) != nullptr;
-                       }) &&
+    return std::all_of(
+               cells_.begin(), cells_.end(),
+               [this](const Cell& cell) {
+                 const GmshCell* const one = FindGmshCell(TypeOf(cell));
+                 return one != nullptr &&
+                        one->middles.empty() ==
+                            FindGmshCell(TypeOf(cells_[0]))->middles.empty();
+               }) &&
            std::any_of(cells_.begin(), cells_.end(), [this](const Cell& cell) {
              return FindGmshKind(TypeOf(cell)) == nullptr ||
                     cell.type != cells_[0].type;
@@ -294,7 +337,7 @@ class GmshCells {
   void CheckOneKind() const {
     for (const Cell& cell : cells_) {
       if (FindGmshKind(TypeOf(cell)) == nullptr &&
-          FindGmshShape(TypeOf(cell)) == nullptr) {
+          FindGmshCell(TypeOf(cell)) == nullptr) {
         ThrowInputError(
             path_, NameOf(cell) + ", but the elements of a scene are " +
                        kSupportedElements + "; mesh the specimen with these");
@@ -303,7 +346,7 @@ class GmshCells {
         ThrowInputError(path_, NameOf(cell) + ", but others are of type " +
                                    ElementTypeName(TypeOf(cells_[0])) +
                                    "; mesh the specimen with one kind of "
-                                   "element, or with linear ones");
+                                   "element, or with elements of one order");
       }
     }
   }
@@ -322,21 +365,20 @@ class GmshCells {
   }
 
   void CutElements(const Numbering& nodes, MeshFile& mesh) {
-    const int dimension = FindGmshShape(TypeOf(cells_[0]))->dimension;
-    mesh.kind = dimension == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
-    Simplices simplices(dimension);
+    std::vector<FileCell> to_cut;
     for (const Cell& cell : cells_) {
-      const CellShape& shape = *FindGmshShape(TypeOf(cell));
-      simplices.Add(shape, NodesOf(cell, shape.num_vertices, nodes));
+      const GmshCell& one = *FindGmshCell(TypeOf(cell));
+      const std::vector<int> in_file = NodesOf(cell, one.NumNodes(), nodes);
+      std::vector<int> of_cell(in_file.begin(),
+                               in_file.begin() + one.num_vertices);
+      for (const int place : one.middles) {
+        of_cell.push_back(in_file[place]);
+      }
+      to_cut.push_back({one.Shape(), std::move(of_cell)});
     }
-    if (const auto folded = simplices.FirstFolded(mesh.nodes)) {
-      ThrowInputError(path_, NameOf(cells_[*folded]) +
-                                 " that is folded or flat; correct the order "
-                                 "of its nodes, or mesh again");
-    }
-    mesh.elements = simplices.Elements();
-    mesh.notices.push_back(simplices.Notice());
-    cell_of_part_ = simplices.Cells();
+    cell_of_part_ = CutCells(
+        to_cut, [this](std::size_t k) { return NameOf(cells_[k]) + " that"; },
+        mesh);
   }
 
   const std::filesystem::path path_;
@@ -347,8 +389,8 @@ class GmshCells {
   std::vector<std::size_t> cell_of_part_;
 };
 
-/// Appends the facets of these vertices, each in the parts into which it is
-/// cut.
+/// Appends facets, the vertices of which come first in the columns, each in the
+/// parts into which it is cut.
 void AppendCutFacets(const Eigen::MatrixXi& facets, PhysicalGroup& group,
                      Eigen::Index num_vertices) {
   for (const auto& facet : facets.colwise()) {
@@ -376,12 +418,13 @@ void AddEntity(const Numbering& nodes, int entity, bool are_cut,
       positions.push_back(NodePosition(mesh.path, nodes, number));
     }
     group.nodes.insert(group.nodes.end(), positions.begin(), positions.end());
-    const CellShape* const shape = FindGmshShape(elements.types[i]);
+    const GmshCell* const facet = FindGmshCell(elements.types[i]);
     const Eigen::Index count = Eigen::Index(elements.numbers[i].size());
-    if (are_cut && shape != nullptr && group.dimension == 2 &&
+    if (are_cut && facet != nullptr && group.dimension == 2 &&
         mesh.Dimension() == 3) {
       AppendCutFacets(Eigen::Map<const Eigen::MatrixXi>(
-                          positions.data(), shape->num_vertices, count),
+                          positions.data(), facet->NumNodes(), count)
+                          .topRows(facet->num_vertices),
                       group, num_vertices);
     } else if (elements.types[i] == facet_type) {
       const Eigen::Index before = group.facets.cols();
@@ -409,6 +452,7 @@ void ReadPhysicalGroups(const Numbering& nodes, bool are_cut, MeshFile& mesh) {
     std::sort(group.nodes.begin(), group.nodes.end());
     group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()),
                       group.nodes.end());
+    AddNodesBetween(mesh, group.nodes);
     mesh.groups.push_back(std::move(group));
   }
 }
@@ -500,18 +544,19 @@ std::string GroupName(const MeshFile& mesh, int number) {
 
 /// Enters `number` for the elements of the entity, or notes which of them has
 /// another number already.
-void EnterRegion(int number, int entity, const Numbering& elements,
+void EnterRegion(int number, int entity, const GmshCells& cells,
                  Eigen::MatrixXd& regions, MeshFile& mesh) {
+  const Numbering& elements = cells.Numbers();
   for (const std::vector<std::size_t>& of_type :
        GmshElements(mesh.Dimension(), entity).numbers) {
     for (const std::size_t element : of_type) {
       double& region = regions(elements.Find(element));
       if (region != 0 && region != number && mesh.why_no_regions.empty()) {
-        mesh.why_no_regions = mesh.Shape() + " " +
-                              std::to_string(elements.Find(element)) +
-                              " is in the physical groups " +
-                              GroupName(mesh, static_cast<int>(region)) +
-                              " and " + GroupName(mesh, number);
+        mesh.why_no_regions =
+            cells.NameOfElement(elements.Find(element), mesh) +
+            " is in the physical groups " +
+            GroupName(mesh, static_cast<int>(region)) + " and " +
+            GroupName(mesh, number);
       }
       region = number;
     }
@@ -520,19 +565,19 @@ void EnterRegion(int number, int entity, const Numbering& elements,
 
 /// Makes the physical groups of the elements the array `region`, where the file
 /// has none and no element is in two of them.
-void ReadRegions(const Numbering& elements, MeshFile& mesh) {
+void ReadRegions(const GmshCells& cells, MeshFile& mesh) {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups, mesh.Dimension());
   if (groups.empty() || FindArray(mesh.element_arrays, "region") != nullptr) {
     return;
   }
   Eigen::MatrixXd regions =
-      Eigen::MatrixXd::Zero(1, Eigen::Index(elements.Numbers().size()));
+      Eigen::MatrixXd::Zero(1, Eigen::Index(cells.Numbers().Numbers().size()));
   for (const auto& [dimension, number] : groups) {
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
     for (const int entity : entities) {
-      EnterRegion(number, entity, elements, regions, mesh);
+      EnterRegion(number, entity, cells, regions, mesh);
     }
   }
   mesh.are_regions_groups = mesh.why_no_regions.empty();
@@ -564,7 +609,8 @@ MeshFile ReadByGmsh(const std::filesystem::path& link,
     cells.EnterElements(nodes, mesh);
     ReadPhysicalGroups(nodes, cells.AreCut(), mesh);
     ReadViews(nodes, cells.Numbers(), mesh);
-    ReadRegions(cells.Numbers(), mesh);
+    ExtendNodeArrays(mesh);
+    ReadRegions(cells, mesh);
     cells.SpreadOverParts(mesh.element_arrays);
     mesh.has_other_cells = NumElementsOfAnyDimension() >
                            Eigen::Index(cells.Numbers().Numbers().size());

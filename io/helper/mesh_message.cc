@@ -160,6 +160,20 @@ void ReadGroups(Reader& reader, MeshFile& mesh) {
   }
 }
 
+void ReadAdded(Reader& reader, MeshFile& mesh) {
+  mesh.added.resize(reader.Count(1));
+  reader.Require(Eigen::Index(mesh.added.size()) <= mesh.nodes.cols());
+  for (AddedNode& added : mesh.added) {
+    reader.Values(added.around);
+    reader.Values(added.weights);
+    reader.Require(
+        added.weights.size() == added.around.size() &&
+        AreInRange(Eigen::Map<const Eigen::VectorXi>(
+                       added.around.data(), Eigen::Index(added.around.size())),
+                   mesh.nodes.cols()));
+  }
+}
+
 ElementKind ReadKind(Reader& reader) {
   const std::int64_t kind = reader.Number();
   const bool is_known =
@@ -183,16 +197,25 @@ void ReadMesh(Reader& reader, MeshFile& mesh) {
   if (reader.Number() != 0) {
     reader.Bytes(&mesh.thickness.emplace(), sizeof(double));
   }
+  const std::int64_t origin = reader.Number();
+  reader.Require(origin >= 0 && origin <= 2);
+  mesh.origin = static_cast<Origin>(origin);
   ReadGroups(reader, mesh);
   mesh.are_regions_groups = reader.Number() != 0;
   mesh.why_no_regions = reader.Text();
   mesh.has_other_cells = reader.Number() != 0;
   mesh.is_vtk = reader.Number() != 0;
   reader.Values(mesh.node_numbers);
+  reader.Values(mesh.element_numbers);
+  mesh.is_cut = reader.Number() != 0;
+  ReadAdded(reader, mesh);
   mesh.num_nodes_left_out = reader.Number();
   reader.Require((mesh.node_numbers.empty() ||
                   mesh.node_numbers.size() ==
                       static_cast<std::size_t>(mesh.nodes.cols())) &&
+                 (mesh.element_numbers.empty() ||
+                  mesh.element_numbers.size() ==
+                      static_cast<std::size_t>(mesh.elements.cols())) &&
                  mesh.num_nodes_left_out >= 0);
   mesh.notices.resize(reader.Count(1));
   for (std::string& notice : mesh.notices) {
@@ -224,6 +247,7 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh) {
   if (mesh.thickness) {
     writer.Bytes(&*mesh.thickness, sizeof(double));
   }
+  writer.Number(static_cast<int>(mesh.origin));
   writer.Number(static_cast<std::int64_t>(mesh.groups.size()));
   for (const PhysicalGroup& group : mesh.groups) {
     writer.Number(group.dimension);
@@ -237,6 +261,13 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh) {
   writer.Number(mesh.has_other_cells ? 1 : 0);
   writer.Number(mesh.is_vtk ? 1 : 0);
   writer.Values(mesh.node_numbers);
+  writer.Values(mesh.element_numbers);
+  writer.Number(mesh.is_cut ? 1 : 0);
+  writer.Number(static_cast<std::int64_t>(mesh.added.size()));
+  for (const AddedNode& added : mesh.added) {
+    writer.Values(added.around);
+    writer.Values(added.weights);
+  }
   writer.Number(mesh.num_nodes_left_out);
   writer.Texts(mesh.notices);
   writer.Mark(kEnd);

@@ -38,6 +38,15 @@ struct MovedNode {
   Eigen::Vector3d in_file;  ///< Its position there.
 };
 
+/// A node that no cell of the file has: it is in the middle of a quadratic cell
+/// that was cut, or of a side of one.
+struct AddedNode {
+  /// The nodes of that cell or side: its vertices, and those in the middle of
+  /// its edges.
+  std::vector<int> around;
+  std::vector<double> weights;  ///< The shape functions of `around` there.
+};
+
 /// What a mesh file holds, in one form.
 ///
 /// A node is known by its zero-based position among all nodes of the file,
@@ -65,6 +74,8 @@ struct MeshFile {
   /// The field data of these names in a VTK file, or what the element types and
   /// sections of Abaqus say.
   std::optional<double> model;  ///< A place in kNumberedModels, if valid.
+  /// Why the elements say no one model, for messages; else empty.
+  std::string why_no_model;
   std::optional<double> thickness;
   Origin origin = Origin::kMeasured;
 
@@ -85,6 +96,15 @@ struct MeshFile {
   /// elements with the same name.  Empty for VTK and Gmsh.
   std::string sets_of;
   std::vector<std::size_t> node_numbers;  ///< Empty for a VTK file.
+  /// The number in the file of each element, or of the cell that it was cut
+  /// from.  It counts cells from 0 in a VTK file, and is empty where nothing
+  /// was cut there.
+  std::vector<std::size_t> element_numbers;
+  /// Whether the elements are simplices that the cells of the file were cut
+  /// into.
+  bool is_cut = false;
+  /// The last of the nodes, which are not in the file.
+  std::vector<AddedNode> added;
   /// Sentences for people about what is read in another way than it is written.
   std::vector<std::string> notices;
   /// The number of nodes of the file that Gmsh left out because no element uses
@@ -100,8 +120,9 @@ struct MeshFile {
 
 /// Lists what the elements of a scene may be, for error messages.
 inline constexpr char kSupportedElements[] =
-    "tetrahedra and triangles, linear or quadratic, hexahedra of 8 or 27 "
-    "nodes, quadrilaterals of 4 or 9, wedges of 6 and pyramids of 5";
+    "tetrahedra of 4 or 10 nodes, pyramids of 5 or 13, wedges of 6 or 15, "
+    "hexahedra of 8, 20 or 27, triangles of 3 or 6 and quadrilaterals of 4, 8 "
+    "or 9";
 
 /// Lists the extensions of mesh files, for messages.
 inline constexpr char kMeshExtensions[] =
@@ -126,8 +147,34 @@ inline const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
 /// "a, b", the names of arrays; "none" where there are none.
 std::string ArrayNames(const std::vector<FileArray>& arrays);
 
+/// Returns the program that numbered the nodes; empty for a VTK file.
+std::string ProgramOf(const MeshFile& mesh);
+
 /// "node 7" or "node 7 (number 12 in Gmsh)", for error messages.
 std::string NodeName(const MeshFile& mesh, Eigen::Index node);
+
+/// "hexahedron 7", "hexahedron 7 (number 12 in Gmsh)", "tetrahedron 30 (of
+/// number 12 in Abaqus)" where cells were cut, or "tetrahedron 30 (of cell 7)"
+/// in a VTK file, for error messages.
+std::string ElementName(const MeshFile& mesh, Eigen::Index element);
+
+/// Returns the values of an array, one column for each node of the file, at an
+/// added node.
+Eigen::VectorXd ValuesAt(const AddedNode& added, const Eigen::MatrixXd& values);
+
+/// Sets the flags of each added node (one column for each node) where those of
+/// all nodes around it are set, and clears its others.
+template <typename Flags>
+void FlagAddedNodes(const MeshFile& mesh, Flags& flags) {
+  Eigen::Index column = flags.cols() - Eigen::Index(mesh.added.size());
+  for (const AddedNode& added : mesh.added) {
+    flags.col(column++) = flags(Eigen::all, added.around).rowwise().all();
+  }
+}
+
+/// Gives the added nodes columns in the arrays of nodes, which have one for
+/// each node of the file.
+void ExtendNodeArrays(MeshFile& mesh);
 
 /// Tells whether two names of groups are the same; where groups are sets,
 /// letters may be of any case.

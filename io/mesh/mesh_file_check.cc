@@ -73,6 +73,24 @@ void CheckPlane(const MeshFile& mesh) {
   }
 }
 
+// Returns "0 and 1 (numbers 3 and 4 in Abaqus)", with numbers as far as there
+// are some.
+std::string ElementPair(const MeshFile& mesh, Eigen::Index first,
+                        Eigen::Index second) {
+  const auto pair = [](auto a, auto b) {
+    return std::to_string(a) + " and " + std::to_string(b);
+  };
+  const std::string places = pair(first, second);
+  if (mesh.element_numbers.empty()) {
+    return places;
+  }
+  const std::string numbers =
+      pair(mesh.element_numbers[first], mesh.element_numbers[second]);
+  return places + (mesh.is_vtk ? " (of the cells " + numbers + ")"
+                               : " (numbers " + numbers + " in " +
+                                     ProgramOf(mesh) + ")");
+}
+
 void CheckElementsDiffer(const MeshFile& mesh) {
   const int num_vertices = mesh.Topology().num_vertices;
   const auto vertices = mesh.elements.topRows(num_vertices);
@@ -106,8 +124,9 @@ void CheckElementsDiffer(const MeshFile& mesh) {
     if (twin != some.end()) {
       ThrowInputError(
           mesh.path,
-          mesh.Shapes() + " " + std::to_string(twin->second) + " and " +
-              std::to_string((twin + 1)->second) + " have the same nodes; " +
+          mesh.Shapes() + " " +
+              ElementPair(mesh, twin->second, (twin + 1)->second) +
+              " have the same nodes; " +
               (mesh.is_vtk || !mesh.sets_of.empty()
                    ? "keep one of them"
                    : "save the mesh as .msh of version 4 (older ones "
@@ -141,8 +160,7 @@ void CheckMiddleNodes(const MeshFile& mesh) {
       ThrowInputError(
           mesh.path,
           (vertices.size() == 2 ? "the mid-edge " : "the middle ") +
-              NodeName(mesh, node) + " of " + mesh.Shape() + " " +
-              std::to_string(element) +
+              NodeName(mesh, node) + " of " + ElementName(mesh, element) +
               " is a vertex of another one; mesh the specimen with elements "
               "that share whole edges");
     }
@@ -187,7 +205,7 @@ void StraightenOrCurve(MeshFile& mesh) {
   });
   if (curved && !IsSimplex(mesh.kind)) {
     ThrowInputError(mesh.path,
-                    mesh.Shape() + " " + std::to_string(*curved) +
+                    ElementName(mesh, *curved) +
                         " is curved, which only tetrahedra and triangles may "
                         "be; mesh the specimen with straight edges (in Gmsh, "
                         "Mesh.SecondOrderLinear=1), or with " +

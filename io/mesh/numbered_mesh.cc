@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "elastimate/core/text/numbers.h"
+#include "elastimate/io/mesh/cut_cells.h"
 #include "elastimate/io/mesh/numbering.h"
-#include "elastimate/io/mesh/quadratic_simplices.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -74,12 +74,7 @@ class Conversion {
     }
     mesh_.has_other_cells = chosen_.size() != from_.elements.size();
     are_cut_ = AreToBeCut();
-    if (are_cut_) {
-      mesh_.kind = dimension_ == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
-      if (TypeOf(*chosen_[0]).Order() == 2) {
-        mesh_.kind = QuadraticKind(mesh_.kind);
-      }
-    } else if (!chosen_.empty()) {
+    if (!are_cut_ && !chosen_.empty()) {
       mesh_.kind = TheOneKind();
     }
   }
@@ -98,18 +93,14 @@ class Conversion {
     }
     if (are_cut_) {
       CutElements();
-      return;
+    } else {
+      CopyWholeElements();
     }
-    const std::size_t num_nodes = mesh_.Topology().num_nodes;
-    mesh_.elements.resize(static_cast<Eigen::Index>(num_nodes),
-                          static_cast<Eigen::Index>(cells_.size()));
     for (std::size_t k = 0; k < cells_.size(); ++k) {
-      const std::vector<int> nodes = NodesOf(*cells_[k], num_nodes);
-      std::copy(nodes.begin(), nodes.end(),
-                mesh_.elements.col(static_cast<Eigen::Index>(k)).begin());
-      first_part_.push_back(static_cast<Eigen::Index>(k));
+      mesh_.element_numbers.insert(
+          mesh_.element_numbers.end(),
+          std::size_t(first_part_[k + 1] - first_part_[k]), cells_[k]->number);
     }
-    first_part_.push_back(mesh_.elements.cols());
   }
 
   void IndexOtherElements() {
@@ -148,7 +139,7 @@ class Conversion {
       group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()),
                         group.nodes.end());
       if (set.members == Members::kNodes) {
-        AddNodesBetween(group.nodes);
+        AddNodesBetween(mesh_, group.nodes);
       }
       mesh_.groups.push_back(std::move(group));
     }
@@ -170,8 +161,7 @@ class Conversion {
         const double region = parts(0);
         if (region != 0 && region != number && mesh_.why_no_regions.empty()) {
           mesh_.why_no_regions =
-              mesh_.Shape() + " " + std::to_string(first_part_[place]) +
-              " is in the sets \"" +
+              ElementName(mesh_, first_part_[place]) + " is in the sets \"" +
               Printable(mesh_.groups[sets[static_cast<std::size_t>(region) - 1]]
                             .name) +
               "\" and \"" + Printable(mesh_.groups[i].name) + "\"";
@@ -255,59 +245,36 @@ class Conversion {
     return *first.kind;
   }
 
-  void CutElements() {
-    Simplices simplices(dimension_);
-    for (const NumberedElement* element : cells_) {
-      first_part_.push_back(Eigen::Index(simplices.Cells().size()));
-      const CellShape& shape = *TypeOf(*element).Cell();
-      simplices.Add(shape, NodesOf(*element, shape.num_vertices));
+  void CopyWholeElements() {
+    const std::size_t num_nodes = mesh_.Topology().num_nodes;
+    mesh_.elements.resize(static_cast<Eigen::Index>(num_nodes),
+                          static_cast<Eigen::Index>(cells_.size()));
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+      const std::vector<int> nodes = NodesOf(*cells_[k], num_nodes);
+      std::copy(nodes.begin(), nodes.end(),
+                mesh_.elements.col(static_cast<Eigen::Index>(k)).begin());
+      first_part_.push_back(static_cast<Eigen::Index>(k));
     }
-    first_part_.push_back(Eigen::Index(simplices.Cells().size()));
-    if (const auto folded = simplices.FirstFolded(mesh_.nodes)) {
-      const NumberedElement& element = *cells_[*folded];
-      ThrowInputError(mesh_.path, "element " + std::to_string(element.number) +
-                                      " of type " +
-                                      Printable(TypeOf(element).name) +
-                                      " is folded or flat; correct the order "
-                                      "of its nodes, or mesh again");
-    }
-    mesh_.elements = simplices.Elements();
-    std::string notice = simplices.Notice();
-    if (mesh_.Topology().order == 2) {
-      AddMiddles(simplices.Cells());
-      notice += " and " + Counted(added_.size(), "node") +
-                " more, in the middle of new edges, which no measurement has";
-    }
-    mesh_.notices.push_back(notice);
+    first_part_.push_back(mesh_.elements.cols());
   }
 
-  void AddMiddles(const std::vector<std::size_t>& cell_of_part) {
-    std::vector<QuadraticCell> cells;
+  void CutElements() {
+    std::vector<FileCell> cells;
     for (const NumberedElement* element : cells_) {
       cells.push_back(
           {TypeOf(*element).Cell(), NodesOf(*element, element->num_nodes)});
     }
-    added_ = AddMiddleNodes(cells, cell_of_part, mesh_.nodes, mesh_.elements);
-    Eigen::Index column = mesh_.nodes.cols();
-    mesh_.nodes.conservativeResize(Eigen::NoChange,
-                                   column + Eigen::Index(added_.size()));
-    for (const AddedNode& node : added_) {
-      mesh_.nodes.col(column++) = node.position;
-      mesh_.node_numbers.push_back(mesh_.node_numbers.back() + 1);
-    }
-  }
-
-  /// Adds those added nodes that have all nodes around them among `nodes`,
-  /// which ascend.
-  void AddNodesBetween(std::vector<int>& nodes) const {
-    const std::vector<int> before = nodes;
-    for (std::size_t i = 0; i < added_.size(); ++i) {
-      const std::vector<int>& around = added_[i].around;
-      if (std::all_of(around.begin(), around.end(), [&](int node) {
-            return std::binary_search(before.begin(), before.end(), node);
-          })) {
-        nodes.push_back(static_cast<int>(from_.positions.size() + i));
-      }
+    const std::vector<std::size_t> cell_of_part = CutCells(
+        cells,
+        [this](std::size_t k) {
+          return "element " + std::to_string(cells_[k]->number) + " of type " +
+                 Printable(TypeOf(*cells_[k]).name);
+        },
+        mesh_);
+    for (std::size_t k = 0; k <= cells_.size(); ++k) {
+      first_part_.push_back(
+          std::lower_bound(cell_of_part.begin(), cell_of_part.end(), k) -
+          cell_of_part.begin());
     }
   }
 
@@ -569,7 +536,6 @@ class Conversion {
   std::vector<const NumberedElement*> cells_;
   /// The first element of the mesh that is a part of each cell, and the end.
   std::vector<Eigen::Index> first_part_;
-  std::vector<AddedNode> added_;  ///< Behind the nodes of the file.
   std::vector<const NumberedElement*> others_;  ///< By ascending numbers.
   Numbering nodes_{{}};
   Numbering elements_{{}};

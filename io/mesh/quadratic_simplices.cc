@@ -15,7 +15,7 @@ Edge EdgeOf(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 class MiddleNodesOfCells {
  public:
-  MiddleNodesOfCells(const std::vector<QuadraticCell>& cells,
+  MiddleNodesOfCells(const std::vector<FileCell>& cells,
                      const Eigen::Matrix3Xd& positions)
       : positions_(positions) {
     for (const auto& [shape, nodes] : cells) {
@@ -27,15 +27,24 @@ class MiddleNodesOfCells {
     }
   }
 
-  int Find(const QuadraticCell& cell, int a, int b) {
+  int Find(const FileCell& cell, int a, int b) {
     const auto found = middles_.find(EdgeOf(a, b));
     return found != middles_.end() ? found->second : Add(cell, a, b);
   }
 
   std::vector<AddedNode> TakeAdded() { return std::move(added_); }
 
+  /// Returns the positions of the added nodes.
+  Eigen::Matrix3Xd Positions() const {
+    Eigen::Matrix3Xd positions(3, Eigen::Index(added_positions_.size()));
+    for (std::size_t i = 0; i < added_positions_.size(); ++i) {
+      positions.col(Eigen::Index(i)) = added_positions_[i];
+    }
+    return positions;
+  }
+
  private:
-  int Add(const QuadraticCell& cell, int a, int b) {
+  int Add(const FileCell& cell, int a, int b) {
     const auto vertices = cell.nodes.begin();
     std::vector<int> around(vertices, vertices + cell.shape->num_vertices);
     for (const std::vector<int>& places : cell.shape->faces) {
@@ -51,23 +60,25 @@ class MiddleNodesOfCells {
         around = face;
       }
     }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
     const int node = int(positions_.cols()) + int(added_.size());
-    added_.push_back(Between(a, b, around));
+    AddBetween(a, b, around);
     middles_.emplace(EdgeOf(a, b), node);
     return node;
   }
 
-  /// Returns the node between a and b, in the middle of some vertices.
-  AddedNode Between(int a, int b, const std::vector<int>& vertices) const {
+  /// Adds the node between a and b, in the middle of some vertices.
+  void AddBetween(int a, int b, const std::vector<int>& vertices) {
     // Positions of six digits err by less than this share of an edge.
     constexpr double kStraight = 1e-3;
-    AddedNode added = {(positions_.col(a) + positions_.col(b)) / 2, vertices};
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    AddedNode added = {vertices, {}};
     bool is_straight = true;
     for (const int first : vertices) {
       for (const int second : vertices) {
         const auto found = middles_.find({first, second});
-        if (found == middles_.end() || found->second >= positions_.cols()) {
+        if (first == second || found == middles_.end() ||
+            found->second >= positions_.cols()) {
           continue;
         }
         const Eigen::Vector3d x = positions_.col(first);
@@ -75,29 +86,32 @@ class MiddleNodesOfCells {
         const Eigen::Vector3d middle = positions_.col(found->second);
         is_straight = is_straight && (middle - (x + y) / 2).norm() <=
                                          kStraight * (y - x).norm();
-        sum += middle;
         added.around.push_back(found->second);
       }
     }
-    if (!is_straight) {
-      const auto num_vertices = double(vertices.size());
-      const double num_middles = double(added.around.size()) - num_vertices;
-      added.position = (1 + num_vertices / 4) / num_middles * sum -
-                       positions_(Eigen::all, vertices).rowwise().sum() / 4;
-    }
-    return added;
+    const auto num_vertices = double(vertices.size());
+    const double num_middles = double(added.around.size()) - num_vertices;
+    added.weights.assign(vertices.size(), -0.25);
+    added.weights.resize(added.around.size(),
+                         (1 + num_vertices / 4) / num_middles);
+    added_positions_.emplace_back(
+        is_straight
+            ? Eigen::Vector3d((positions_.col(a) + positions_.col(b)) / 2)
+            : Eigen::Vector3d(ValuesAt(added, positions_)));
+    added_.push_back(std::move(added));
   }
 
   const Eigen::Matrix3Xd& positions_;
   std::map<Edge, int> middles_;
   std::vector<AddedNode> added_;
+  std::vector<Eigen::Vector3d> added_positions_;
 };
 
 }  // namespace
 
-std::vector<AddedNode> AddMiddleNodes(const std::vector<QuadraticCell>& cells,
+std::vector<AddedNode> AddMiddleNodes(const std::vector<FileCell>& cells,
                                       const std::vector<std::size_t>& cell,
-                                      const Eigen::Matrix3Xd& positions,
+                                      Eigen::Matrix3Xd& positions,
                                       Eigen::MatrixXi& elements) {
   const ElementTopology& topology = TopologyOf(
       elements.rows() == 4 ? ElementKind::kTet10 : ElementKind::kTri6);
@@ -111,6 +125,10 @@ std::vector<AddedNode> AddMiddleNodes(const std::vector<QuadraticCell>& cells,
           cells[cell[std::size_t(e)]], nodes(ends[0]), nodes(ends[1]));
     }
   }
+  const Eigen::Matrix3Xd added = middles.Positions();
+  positions.conservativeResize(Eigen::NoChange,
+                               positions.cols() + added.cols());
+  positions.rightCols(added.cols()) = added;
   return middles.TakeAdded();
 }
 

@@ -112,6 +112,11 @@ std::size_t Simplices::Add(const CellShape& shape,
     }
   }
   shapes_.push_back(&shape);
+  std::vector<int> sorted = nodes;
+  std::sort(sorted.begin(), sorted.end());
+  const bool is_collapsed =
+      std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  are_collapsed_.push_back(is_collapsed ? 1 : 0);
   return cells_.size() - before;
 }
 
@@ -140,8 +145,10 @@ std::optional<std::size_t> Simplices::FirstFolded(
 
 std::string Simplices::Notice() const {
   std::map<int, std::size_t> counts;
-  for (const CellShape* shape : shapes_) {
-    ++counts[-shape->num_vertices];
+  std::map<int, std::size_t> collapsed;
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    ++counts[-shapes_[i]->num_vertices];
+    collapsed[-shapes_[i]->num_vertices] += are_collapsed_[i] != 0 ? 1 : 0;
   }
   std::string cells;
   std::size_t left = counts.size();
@@ -153,6 +160,10 @@ std::string Simplices::Notice() const {
                             : ", ") +
              std::to_string(count) + " " +
              std::string(count == 1 ? shape.name : shape.plural);
+    if (const std::size_t some = collapsed[vertices]; some > 0) {
+      cells += (count == 1 ? " (" : " (" + std::to_string(some) + " of them ") +
+               std::string("with collapsed edges)");
+    }
   }
   return cells + (shapes_.size() == 1 ? " is" : " are") + " read as " +
          std::to_string(cells_.size()) + " " +

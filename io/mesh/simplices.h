@@ -29,6 +29,13 @@ struct CellShape {
 /// hexahedron that has so many vertices; null where there is none.
 const CellShape* FindCellShape(int dimension, int num_vertices);
 
+/// A cell of a file: its vertices and, behind them, no other nodes (it is
+/// linear) or one in the middle of each edge (it is quadratic).
+struct FileCell {
+  const CellShape* shape;
+  std::vector<int> nodes;
+};
+
 /// Simplices that cells of any shapes were cut into.
 class Simplices {
  public:
@@ -52,12 +59,14 @@ class Simplices {
   /// volumes of both signs, or that has none.  `positions` are 3 x num_nodes.
   std::optional<std::size_t> FirstFolded(
       const Eigen::Matrix3Xd& positions) const;
-  /// "3 hexahedra and 1 wedge are read as 21 tetrahedra with the same nodes".
+  /// "3 hexahedra and 2 wedges (1 of them with collapsed edges) are read as 23
+  /// tetrahedra with the same nodes".
   std::string Notice() const;
 
  private:
   int dimension_;
   std::vector<const CellShape*> shapes_;  ///< Of the cells.
+  std::vector<char> are_collapsed_;       ///< Whether a cell has a node twice.
   std::vector<int> nodes_;
   std::vector<std::size_t> cells_;
 };

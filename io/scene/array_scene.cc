@@ -99,9 +99,11 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   const std::string suffix = CaseSuffix(number);
   const ComponentMask all = AllComponents(mesh);
   LoadCase load_case;
-  load_case.loads.emplace_back(NodalForces{
+  NodalForces forces = {
       VectorField(mesh.path, "the point array 'force" + suffix + "'", mesh,
-                  RequireNodeArray(mesh, "force" + suffix, false), all)});
+                  RequireNodeArray(mesh, "force" + suffix, false), all)};
+  forces.force.rightCols(Eigen::Index(mesh.added.size())).setZero();
+  load_case.loads.emplace_back(std::move(forces));
   if (HasOwnSupports(mesh, number)) {
     load_case.supports = ReadSupports(mesh, number);
   }
@@ -117,6 +119,7 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
     }
     return load_case;
   }
+  MarkObserved(mesh, load_case);
   load_case.displacement = VectorField(
       mesh.path, "the point array '" + name + "'", mesh, *displacement,
       load_case.observed.size() > 0 ? load_case.observed : all,

@@ -47,7 +47,7 @@ Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
     if (value != std::floor(value) ||
         std::abs(value) > std::numeric_limits<int>::max()) {
       ThrowInputError(mesh.path, name + " is " + NumberText(value) + " at " +
-                                     mesh.Shape() + " " + std::to_string(i) +
+                                     ElementName(mesh, i) +
                                      "; give it integers below 2^31");
     }
   }
@@ -79,7 +79,10 @@ Eigen::MatrixXd VectorField(const std::filesystem::path& file,
 }
 
 ComponentMask AllComponents(const MeshFile& mesh) {
-  return ComponentMask::Constant(mesh.Dimension(), mesh.nodes.cols(), true);
+  ComponentMask all =
+      ComponentMask::Constant(mesh.Dimension(), mesh.nodes.cols(), true);
+  all.rightCols(Eigen::Index(mesh.added.size())) = false;
+  return all;
 }
 
 ComponentMask ToComponentMask(const std::filesystem::path& file,
@@ -90,7 +93,18 @@ ComponentMask ToComponentMask(const std::filesystem::path& file,
           ? Eigen::MatrixXd(values.replicate(mesh.Dimension(), 1))
           : Eigen::MatrixXd(values.topRows(mesh.Dimension()));
   RequireFinite(file, what, mesh, numbers, AllComponents(mesh), "correct it");
-  return numbers.array() != 0;
+  ComponentMask flags = numbers.array() != 0;
+  FlagAddedNodes(mesh, flags);
+  return flags;
+}
+
+void MarkObserved(const MeshFile& mesh, LoadCase& load_case) {
+  if (!mesh.added.empty()) {
+    const ComponentMask of_file = AllComponents(mesh);
+    load_case.observed = load_case.observed.size() == 0
+                             ? of_file
+                             : ComponentMask(load_case.observed && of_file);
+  }
 }
 
 void ClearUnobserved(LoadCase& load_case) {

@@ -51,7 +51,8 @@ Eigen::MatrixXd VectorField(const std::filesystem::path& file,
                             const ComponentMask& mask,
                             const std::string& mend = "correct it");
 
-/// Returns a flag that is set for each component of each node.
+/// Returns a flag that is set for each component of each node but the added
+/// ones, for which a file has no values.
 ComponentMask AllComponents(const MeshFile& mesh);
 
 /// Returns one flag per component from one number per node or one per
@@ -61,6 +62,9 @@ ComponentMask AllComponents(const MeshFile& mesh);
 ComponentMask ToComponentMask(const std::filesystem::path& file,
                               const std::string& what, const MeshFile& mesh,
                               const Eigen::MatrixXd& values);
+
+/// Marks the added nodes of a mesh, where it has some, as not observed.
+void MarkObserved(const MeshFile& mesh, LoadCase& load_case);
 
 /// Sets what was not observed to zero where it is NaN.
 void ClearUnobserved(LoadCase& load_case);

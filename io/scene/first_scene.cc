@@ -6,6 +6,7 @@
 
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/text/numbers.h"
+#include "elastimate/io/scene/json_scene.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -103,6 +104,8 @@ std::string FirstSceneText(const std::filesystem::path& path,
          {"surface", Selection(mesh, scene.loaded)}});
   }
   document["cases"] = Json::array({load_case});
+  const nlohmann::json contents = document;
+  ReadJsonScene(JsonValue(path, contents), Measurement::kOptional, {});
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

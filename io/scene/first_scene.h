@@ -34,8 +34,9 @@ struct FirstScene {
 
 /// Returns the text of a scene.json at `path`, with paths relative to its
 /// folder.  Throws std::invalid_argument, naming what the mesh has, for a name
-/// that it does not have, and for a force of another number of components than
-/// its dimension.
+/// that it does not have, for a force of another number of components than
+/// its dimension, and for all that would be wrong in such a file, such as
+/// points that are not there.
 std::string FirstSceneText(const std::filesystem::path& path,
                            const MeshFile& mesh, const FirstScene& scene);
 

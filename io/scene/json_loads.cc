@@ -52,8 +52,10 @@ NodalForces ReadNodalForces(const JsonValue& load, const LoadContext& context) {
           "must have either \"value\" and \"nodes\", or one of \"file\" and "
           "\"array\"");
     }
-    return {ReadNodeField(load, context.mesh, AllComponents(context.mesh),
-                          "correct it")};
+    NodalForces forces = {ReadNodeField(
+        load, context.mesh, AllComponents(context.mesh), "correct it")};
+    forces.force.rightCols(Eigen::Index(context.mesh.added.size())).setZero();
+    return forces;
   }
   const Eigen::VectorXd value =
       load.At("value").Vector(context.mesh.Dimension());

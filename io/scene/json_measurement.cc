@@ -96,6 +96,7 @@ std::vector<FileLines> MeasurementReader::Read(
         ReadNumberedNodes(displacement.At("nodes"), mesh_, load_case, notices)};
   }
   displacement.CheckKeys({"file", "array"});
+  MarkObserved(mesh_, load_case);
   load_case.displacement = ReadNodeField(
       displacement, mesh_,
       load_case.observed.size() > 0 ? load_case.observed : AllComponents(mesh_),

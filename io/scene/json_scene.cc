@@ -179,7 +179,11 @@ const JsonValue& OwnerOfSupports(const JsonValue& document,
 FileScene ReadJsonScene(const std::filesystem::path& path,
                         Measurement measurement, const SceneChoices& choices) {
   const nlohmann::json parsed = ParseJsonFile(path);
-  const JsonValue document(path, parsed);
+  return ReadJsonScene(JsonValue(path, parsed), measurement, choices);
+}
+
+FileScene ReadJsonScene(const JsonValue& document, Measurement measurement,
+                        const SceneChoices& choices) {
   document.CheckKeys({"model", "thickness", "mesh", "regions", "materials",
                       "supports", "rigid_motion", "origin", "cases", "frames"});
   const SectionChoice choice = Choose(choices.section, ReadSection(document));

@@ -6,6 +6,7 @@
 
 #include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/scene_reader.h"
+#include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
 
@@ -13,6 +14,10 @@ namespace elastimate {
 /// std::invalid_argument, naming the file and the place in it.
 FileScene ReadJsonScene(const std::filesystem::path& path,
                         Measurement measurement, const SceneChoices& choices);
+
+/// Reads the scene of the contents of such a file.
+FileScene ReadJsonScene(const JsonValue& document, Measurement measurement,
+                        const SceneChoices& choices);
 
 }  // namespace elastimate
 

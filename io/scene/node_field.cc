@@ -33,9 +33,12 @@ Eigen::MatrixXd ReadNodeField(const JsonValue& value, const MeshFile& mesh,
   if (value.Has("file")) {
     RequireNodePositions(mesh);
     file = ResolvePath(value.At("file"));
-    const CsvField table =
-        ReadCsvField(file, mesh.nodes.cols(), mesh.Dimension());
-    field = table.values;
+    const auto num_added = Eigen::Index(mesh.added.size());
+    CsvField table =
+        ReadCsvField(file, mesh.nodes.cols() - num_added, mesh.Dimension());
+    field.setZero(table.values.rows(), mesh.nodes.cols());
+    field.leftCols(table.values.cols()) = table.values;
+    table.lines.resize(std::size_t(mesh.nodes.cols()), 0);
     if (lines != nullptr) {
       lines->push_back({file, table.lines});
     }

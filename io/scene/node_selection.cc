@@ -52,6 +52,7 @@ void SelectByArray(const JsonValue& name, const MeshFile& mesh,
     }
   }
   mask = values.row(0).array() != 0;
+  FlagAddedNodes(mesh, mask);
 }
 
 std::string GroupNames(const MeshFile& mesh) {

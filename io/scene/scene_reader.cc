@@ -156,6 +156,16 @@ class SceneNodes {
     return scene;
   }
 
+  NumberedNodes Numbered(const MeshFile& mesh) const {
+    NumberedNodes nodes = {mesh.path, ProgramOf(mesh), {}};
+    for (const Eigen::Index node : kept_) {
+      nodes.numbers.push_back(mesh.node_numbers.empty()
+                                  ? std::size_t(node)
+                                  : mesh.node_numbers[node]);
+    }
+    return nodes;
+  }
+
   /// Keeps the lines of the kept nodes of a measurement of all nodes.
   FileLines Filter(const FileLines& all) const {
     FileLines lines = {all.file, {}};
@@ -405,6 +415,51 @@ void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
   notices.push_back(sentence.str());
 }
 
+/// Gives the scene the chosen origin, and throws where its elements cannot have
+/// computed its displacements.
+void ChooseOrigin(const std::filesystem::path& path, const MeshFile& mesh,
+                  const std::optional<Origin>& choice, Scene& scene) {
+  if (scene.origin == Origin::kComputedAtLargeStrains &&
+      !HasLargeStrainLaw(scene.materials)) {
+    scene.origin = Origin::kMeasured;
+  }
+  scene.origin = choice.value_or(scene.origin);
+  const bool is_measured = std::any_of(
+      scene.load_cases.begin(), scene.load_cases.end(),
+      [](const LoadCase& load_case) { return IsMeasured(load_case); });
+  if (mesh.is_cut && is_measured && scene.origin != Origin::kMeasured) {
+    ThrowInputError(
+        path,
+        "its displacements are said to be computed by the elements of this "
+        "scene, but the cells of '" +
+            PrintablePath(mesh.path) + "' were cut into " + mesh.Shapes() +
+            ", so that other elements computed them; give \"origin\": "
+            "\"measured\" (--origin=measured)");
+  }
+}
+
+/// Throws unless the scene is valid; says which element of the file is wrong.
+void Validate(const std::filesystem::path& path, const MeshFile& mesh,
+              bool numbers_differ, const Scene& scene) {
+  std::string sentence;
+  try {
+    ValidateScene(scene);
+    return;
+  } catch (const InvalidElement& error) {
+    sentence = error.what();
+    if (const std::string name = ElementName(mesh, error.Element());
+        !mesh.element_numbers.empty()) {
+      sentence += "; it is " + name;
+    }
+  } catch (const std::invalid_argument& error) {
+    sentence = error.what();
+  }
+  ThrowInputError(
+      path, sentence + (numbers_differ ? " (counting only " + mesh.Shapes() +
+                                             " and the nodes they use)"
+                                       : ""));
+}
+
 /// Returns the valid scene without the nodes that no element uses, and their
 /// order in the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
@@ -420,6 +475,9 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   NoteMovedNodes(mesh, notices);
   const SceneNodes nodes(mesh, file_scene.scene.mesh);
   file_order = nodes.FileOrder();
+  if (reading.nodes.numbers.empty()) {
+    reading.nodes = nodes.Numbered(mesh);
+  }
   const Eigen::Index num_dropped = nodes.NumDropped() + mesh.num_nodes_left_out;
   if (num_dropped > 0) {
     notices.push_back(
@@ -447,20 +505,8 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   }
   ChooseMaterials(path, mesh, choices.regions, scene, notices);
   ChooseLaw(path, choices.law, scene);
-  try {
-    ValidateScene(scene);
-  } catch (const std::invalid_argument& error) {
-    const bool numbers_differ = num_dropped > 0 || mesh.has_other_cells;
-    ThrowInputError(
-        path,
-        error.what() + (numbers_differ ? " (counting only " + mesh.Shapes() +
-                                             " and the nodes they use)"
-                                       : ""));
-  }
-  if (scene.origin == Origin::kComputedAtLargeStrains &&
-      !HasLargeStrainLaw(scene.materials)) {
-    scene.origin = Origin::kMeasured;
-  }
+  Validate(path, mesh, num_dropped > 0 || mesh.has_other_cells, scene);
+  ChooseOrigin(path, mesh, choices.origin, scene);
   CheckObserved(path, scene);
   return scene;
 }

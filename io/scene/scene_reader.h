@@ -51,6 +51,17 @@ struct SceneChoices {
   /// then become nodes without a displacement.  Where this is empty, the
   /// specimen ends at the gaps.
   std::vector<bool> filled_gaps;
+  /// Replaces what the files say of the displacements.
+  std::optional<Origin> origin = {};
+};
+
+/// The nodes of a scene as its mesh file numbers them.
+struct NumberedNodes {
+  std::filesystem::path file;
+  /// "Gmsh", "Abaqus" or "FEBio"; empty for a VTK file, whose points are
+  /// counted from 0.
+  std::string program;
+  std::vector<std::size_t> numbers;  ///< One for each node of the scene.
 };
 
 /// A scene as read, and what the reader has to say about it.
@@ -69,6 +80,7 @@ struct SceneReading {
   /// The lines of the measurement of each load case, in the order of nodes or
   /// of points; empty where it is not text.
   std::vector<std::vector<FileLines>> measured_lines;
+  NumberedNodes nodes;
   /// The cell arrays that the scene.json names as axes of materials, one column
   /// for each element, by name.
   std::map<std::string, Eigen::MatrixXd> axis_arrays;
@@ -97,6 +109,9 @@ struct SceneReading {
 /// points of a VTK file, by ascending node number in files of other formats.
 /// That is what ids and CSV rows in a scene.json refer to, and what messages
 /// name.
+///
+/// Elements that were cut into simplices as they were read (MeshFile::is_cut)
+/// did not compute displacements, so that these have to be measured there.
 ///
 /// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
 /// with one sentence that names the file and the array, key, node or element

@@ -48,11 +48,13 @@ void CheckPlanar(const MeshFile& mesh, const SectionChoice& choice) {
   const std::string planar =
       "the mesh is of " + mesh.Shapes() + ", which are planar, but ";
   if (!choice.model || *choice.model == SectionModel::kSolid) {
-    ThrowInputError(
-        mesh.path,
-        planar + (choice.model ? "the model is 3d" : "no model is given") +
-            "; give --model=plane_stress or --model=plane_strain, "
-            "or \"model\" in a scene.json");
+    ThrowInputError(mesh.path,
+                    (!choice.model && !mesh.why_no_model.empty()
+                         ? mesh.why_no_model
+                         : planar + (choice.model ? "the model is 3d"
+                                                  : "no model is given")) +
+                        "; give --model=plane_stress or --model=plane_strain, "
+                        "or \"model\" in a scene.json");
   }
   if (!choice.thickness) {
     ThrowInputError(mesh.path,

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/large_pages.h"
+#include "elastimate/io/mesh/cut_cells.h"
 #include "elastimate/io/mesh/simplices.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
@@ -187,24 +188,45 @@ std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
   return cells;
 }
 
-/// Returns the shape of a cell whose points are its vertices, in the order of
-/// CellShape; null for others.
-const CellShape* ShapeOfCell(int type) {
+/// What a cell may be cut as.
+struct CellToCut {
+  const CellShape* shape = nullptr;  ///< Null for cells of other types.
+  bool is_quadratic = false;
+
+  int NumPoints() const {
+    return shape->num_vertices + (is_quadratic ? int(shape->edges.size()) : 0);
+  }
+};
+
+/// The points of these types are in the order of FileCell.
+CellToCut CellToCutOf(int type) {
   switch (type) {
     case VTK_TRIANGLE:
-      return FindCellShape(2, 3);
+      return {FindCellShape(2, 3), false};
     case VTK_QUAD:
-      return FindCellShape(2, 4);
+      return {FindCellShape(2, 4), false};
     case VTK_TETRA:
-      return FindCellShape(3, 4);
+      return {FindCellShape(3, 4), false};
     case VTK_PYRAMID:
-      return FindCellShape(3, 5);
+      return {FindCellShape(3, 5), false};
     case VTK_WEDGE:
-      return FindCellShape(3, 6);
+      return {FindCellShape(3, 6), false};
     case VTK_HEXAHEDRON:
-      return FindCellShape(3, 8);
+      return {FindCellShape(3, 8), false};
+    case VTK_QUADRATIC_TRIANGLE:
+      return {FindCellShape(2, 3), true};
+    case VTK_QUADRATIC_QUAD:
+      return {FindCellShape(2, 4), true};
+    case VTK_QUADRATIC_TETRA:
+      return {FindCellShape(3, 4), true};
+    case VTK_QUADRATIC_PYRAMID:
+      return {FindCellShape(3, 5), true};
+    case VTK_QUADRATIC_WEDGE:
+      return {FindCellShape(3, 6), true};
+    case VTK_QUADRATIC_HEXAHEDRON:
+      return {FindCellShape(3, 8), true};
     default:
-      return nullptr;
+      return {};
   }
 }
 
@@ -214,7 +236,10 @@ bool AreToBeCut(const VtkGrid& grid, const std::vector<std::size_t>& cells) {
   const auto type = [&](std::size_t cell) { return grid.cell_types[cell]; };
   return std::all_of(cells.begin(), cells.end(),
                      [&](std::size_t cell) {
-                       return ShapeOfCell(type(cell)) != nullptr;
+                       const CellToCut of_cell = CellToCutOf(type(cell));
+                       return of_cell.shape != nullptr &&
+                              of_cell.is_quadratic ==
+                                  CellToCutOf(type(cells[0])).is_quadratic;
                      }) &&
          std::any_of(cells.begin(), cells.end(), [&](std::size_t cell) {
            return !KindOfCell(type(cell)) || type(cell) != type(cells[0]);
@@ -233,7 +258,7 @@ ElementKind TheOneKind(const std::filesystem::path& path, const VtkGrid& grid,
   const int first_type = grid.cell_types[cells.front()];
   for (const std::size_t cell : cells) {
     const int type = grid.cell_types[cell];
-    if (!KindOfCell(type) && ShapeOfCell(type) == nullptr) {
+    if (!KindOfCell(type) && CellToCutOf(type).shape == nullptr) {
       ThrowInputError(
           path, CellName(grid, cell) + ", but the cells of a scene are " +
                     kSupportedElements + "; mesh the specimen with these");
@@ -242,7 +267,7 @@ ElementKind TheOneKind(const std::filesystem::path& path, const VtkGrid& grid,
       ThrowInputError(path, CellName(grid, cell) + ", but " +
                                 CellName(grid, cells.front()) +
                                 "; mesh the specimen with cells of one kind, "
-                                "or with linear ones");
+                                "or with all linear or all quadratic ones");
     }
   }
   return *KindOfCell(first_type);
@@ -280,25 +305,19 @@ std::vector<int> PointsOfCell(const std::filesystem::path& path,
 std::vector<std::size_t> CutElements(const VtkGrid& grid,
                                      const std::vector<std::size_t>& cells,
                                      MeshFile& mesh) {
-  const int dimension = ShapeOfCell(grid.cell_types[cells.front()])->dimension;
-  mesh.kind = dimension == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
-  Simplices simplices(dimension);
+  std::vector<FileCell> to_cut;
   for (const std::size_t cell : cells) {
-    const CellShape& shape = *ShapeOfCell(grid.cell_types[cell]);
-    simplices.Add(shape,
-                  PointsOfCell(mesh.path, grid, cell, shape.num_vertices));
+    const CellToCut of_cell = CellToCutOf(grid.cell_types[cell]);
+    to_cut.push_back({of_cell.shape, PointsOfCell(mesh.path, grid, cell,
+                                                  of_cell.NumPoints())});
   }
-  if (const auto folded = simplices.FirstFolded(grid.points)) {
-    ThrowInputError(mesh.path, CellName(grid, cells[*folded]) +
-                                   " that is folded or flat; order its points "
-                                   "as VTK does, or mesh again");
+  std::vector<std::size_t> cell_of_element = CutCells(
+      to_cut, [&](std::size_t k) { return CellName(grid, cells[k]) + " that"; },
+      mesh);
+  for (std::size_t& cell : cell_of_element) {
+    cell = cells[cell];
   }
-  mesh.elements = simplices.Elements();
-  mesh.notices.push_back(simplices.Notice());
-  std::vector<std::size_t> cell_of_element;
-  for (const std::size_t i : simplices.Cells()) {
-    cell_of_element.push_back(cells[i]);
-  }
+  mesh.element_numbers = cell_of_element;
   return cell_of_element;
 }
 
@@ -356,19 +375,20 @@ MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
   CheckOffsets(path, grid);
   std::vector<std::size_t> cells = CellsOfHighestDimension(grid);
   mesh.has_other_cells = cells.size() != grid.cell_types.size();
-  const bool are_cut = AreToBeCut(grid, cells);
-  if (are_cut) {
-    cells = CutElements(grid, cells, mesh);
-  } else if (!cells.empty()) {
-    CopyElements(grid, cells, mesh);
-  }
   CheckArrayLengths(path, grid.point_arrays, grid.points.cols());
   CheckArrayLengths(path, grid.cell_arrays,
                     static_cast<Eigen::Index>(grid.cell_types.size()));
-  mesh.nodes = std::move(grid.points);
+  if (AreToBeCut(grid, cells)) {
+    mesh.nodes = grid.points;
+    cells = CutElements(grid, cells, mesh);
+  } else if (!cells.empty()) {
+    CopyElements(grid, cells, mesh);
+    mesh.nodes = std::move(grid.points);
+  }
   mesh.node_arrays = std::move(grid.point_arrays);
+  ExtendNodeArrays(mesh);
   mesh.element_arrays = std::move(grid.cell_arrays);
-  if (mesh.has_other_cells || are_cut) {
+  if (mesh.has_other_cells || mesh.is_cut) {
     for (FileArray& array : mesh.element_arrays) {
       array.values = Eigen::MatrixXd(array.values(Eigen::all, cells));
     }

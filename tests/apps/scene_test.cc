@@ -88,6 +88,7 @@ TEST_F(SceneCommand, LeadsFromAMeshToAnEstimate) {
   EXPECT_THAT(check,
               HasSubstr("force, resultant (0.5, 0, -6) on an area of 4"));
   EXPECT_THAT(check, HasSubstr("40 points located in elements"));
+  EXPECT_THAT(check, Not(HasSubstr("force on supports")));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "check.vtu"));
   const Json report = Succeed(
                           "estimate scene.json --estimator=iterative-fe "
@@ -114,6 +115,17 @@ TEST_F(SceneCommand, LeadsFromADeckOfCalculixToItsModuli) {
   EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3, 1e-5);
 }
 
+TEST_F(SceneCommand, TellsForceOnSupports) {
+  testing::WriteText(folder_ / "scene.json", R"({"mesh": "mesh.inp",
+    "supports": [{"nodes": {"set": "FIX"}, "components": "z"}],
+    "cases": [{"loads": [
+      {"type": "nodal_force", "value": [1, 0, -2], "nodes": {"ids": [0]}},
+      {"type": "force", "value": [0, 0, -6], "surface": {"set": "TOP"}}]}]})");
+  EXPECT_THAT(Succeed("check scene.json").output,
+              HasSubstr("force on supports     (0, 0, -2) of the loads is on 1 "
+                        "node held in its direction"));
+}
+
 TEST_F(SceneCommand, TellsWhatIsLeftLoose) {
   Succeed("scene mesh.inp --force=TOP,0,0,-6");
   const std::string check = Succeed("check scene.json").output;
@@ -130,6 +142,13 @@ TEST_F(SceneCommand, RefusesWhatTheMeshDoesNotHave) {
   Refuse("scene mesh.inp --force=TOP,1,2", "has 3 components, but 2 are given");
   Refuse("scene mesh.inp --support=FIX --out=scene.vtu",
          "the name must end in .json");
+  Refuse("scene mesh.inp --support=FIX --points=none.csv --out=load.json",
+         "none.csv");
+  Refuse("scene mesh.inp --support=FIX --model=plane_stress --out=load.json",
+         "which are solid, but the model is plane_stress");
+  Refuse("scene mesh.inp --out=load.json",
+         "a first scene needs what is held or loaded; give --support=NAME");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "load.json"));
   Refuse("scene", "scene needs one mesh file; it got none");
   testing::WriteText(folder_ / "scene.json", "{}");
   Refuse("scene mesh.inp --support=FIX", "scene.json is there already");

@@ -2,9 +2,17 @@
 #define ELASTIMATE_TESTS_IO_MIXED_BLOCK_H_
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <map>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/mesh/simplices.h"
 
 namespace elastimate {
 
@@ -65,6 +73,72 @@ struct MixedBlock {
     }
   }
 };
+
+// The block without pyramids, whose cells have middles of edges; those at x = 0
+// are off the straight line by `bend`.
+struct QuadraticBlock {
+  explicit QuadraticBlock(double bend) : linear(3, false) {
+    std::map<std::pair<int, int>, int> middles;
+    std::vector<Eigen::Vector3d> added;
+    for (const MixedBlock::Cell& cell : linear.cells) {
+      const CellShape& shape = *FindCellShape(3, int(cell.nodes.size()));
+      cells.push_back({cell.type == "C3D8" ? "C3D20" : "C3D15", cell.nodes});
+      for (const auto& [i, j] : shape.edges) {
+        const auto [a, b] = std::minmax(cell.nodes[i], cell.nodes[j]);
+        const int next = int(linear.nodes.cols()) + int(added.size());
+        const auto [place, is_new] = middles.insert({{a, b}, next});
+        if (is_new) {
+          const Eigen::Vector3d x = linear.nodes.col(a);
+          const Eigen::Vector3d y = linear.nodes.col(b);
+          added.emplace_back((x + y) / 2);
+          if (x(0) == 0 && y(0) == 0) {
+            added.back()(0) -= bend;
+          }
+        }
+        cells.back().nodes.push_back(place->second);
+      }
+    }
+    nodes.resize(3, linear.nodes.cols() + Eigen::Index(added.size()));
+    nodes.leftCols(linear.nodes.cols()) = linear.nodes;
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      nodes.col(linear.nodes.cols() + Eigen::Index(i)) = added[i];
+    }
+  }
+
+  std::string Text() const {
+    std::ostringstream text;
+    text.precision(17);
+    text << "*NODE\n";
+    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+      text << 10 + i << ", " << nodes(0, i) << ", " << nodes(1, i) << ", "
+           << nodes(2, i) << "\n";
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      text << "*ELEMENT, TYPE=" << cells[i].type << ", ELSET=EALL\n" << 100 - i;
+      for (std::size_t k = 0; k < cells[i].nodes.size(); ++k) {
+        text << (k % 15 == 14 ? ",\n" : ", ") << 10 + cells[i].nodes[k];
+      }
+      text << "\n";
+    }
+    text << "*NSET, NSET=LEFT\n";
+    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+      text << (nodes(0, i) <= 0 ? std::to_string(10 + i) + "\n" : "");
+    }
+    return text.str();
+  }
+
+  MixedBlock linear;
+  Eigen::Matrix3Xd nodes;
+  std::vector<MixedBlock::Cell> cells;
+};
+
+inline double VolumeOf(const MeshFile& file) {
+  Mesh mesh;
+  mesh.kind = file.kind;
+  mesh.nodes = file.nodes.topRows(file.Dimension());
+  mesh.elements = file.elements;
+  return ElementVolumes(mesh).sum();
+}
 
 }  // namespace elastimate
 

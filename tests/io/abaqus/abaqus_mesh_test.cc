@@ -138,7 +138,8 @@ TEST_F(AbaqusMeshTest, HasNoRegionsWhereSetsOverlap) {
   const MeshFile mesh = Read(text);
   EXPECT_FALSE(mesh.are_regions_groups);
   EXPECT_EQ(mesh.why_no_regions,
-            "tetrahedron 0 is in the sets \"FIRST\" and \"ONE\"");
+            "tetrahedron 0 (number 1 in Abaqus) is in the sets \"FIRST\" and "
+            "\"ONE\"");
   // Sections say which of them have materials.
   const std::string section =
       text +
@@ -215,6 +216,12 @@ TEST_F(AbaqusMeshTest, ReadsPlanarElementsWithTheirSection) {
   EXPECT_EQ(std::get<SurfaceForce>(scene.load_cases[0].loads[0]).facets,
             Eigen::Vector2i(1, 2));
   EXPECT_EQ(*Read(Replaced(text, "CPS4R", "CPE4")).model, 2);
+  EXPECT_THROWS_WITH(
+      ReadWith(
+          Replaced(text, "*SOLID", "*ELEMENT, TYPE=CPE3\n2, 1, 2, 3\n*SOLID"),
+          R"("supports": [], "cases": [{"loads": []}])"),
+      "mesh.inp: some of its elements are in plane stress .CPS. and others in "
+      "plane strain .CPE., but a scene has one model; give --model=");
 }
 
 // Abaqus' manual: the faces of hexahedra are 1234, 5876, 1562, 2673, 3784 and
@@ -282,8 +289,13 @@ TEST_F(AbaqusMeshTest, RefusesWhatIsNotForScenes) {
   const std::string text = TwoFlatTetrahedra();
   EXPECT_THAT(WhyNot(Replaced(text, "*NSET",
                               "*ELEMENT, TYPE=C3D27\n7, 1,2,3,4\n*NSET")),
-              HasSubstr("element 7 is of type C3D27, but the elements of a "
-                        "scene are"));
+              HasSubstr("element 7 is of type C3D27, but the solid "
+                        "elements that are read are C3D4, C3D5, C3D6, C3D8, "
+                        "C3D10, C3D15 and C3D20;"));
+  EXPECT_THAT(
+      WhyNot(text + "*ELEMENT, TYPE=C3D4\n3, 1, 2, 3, 4\n"),
+      HasSubstr("tetrahedra 0 and 2 (numbers 1 and 3 in Abaqus) have the same "
+                "nodes"));
   EXPECT_THAT(WhyNot(Replaced(text, "*NSET",
                               "*ELEMENT, TYPE=C3D10\n"
                               "9, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5\n*NSET")),

@@ -214,13 +214,13 @@ TEST_F(GmshMeshTest, HasNoRegionsWhereAnElementIsInTwoGroups) {
   EXPECT_EQ(reading.scene.mesh.regions.size(), 0);
   EXPECT_THAT(reading.notices,
               ElementsAre(::testing::HasSubstr(
-                  "its groups of elements overlap (tetrahedron "
-                  "0 is in the physical groups 1")));
+                  "its groups of elements overlap (tetrahedron 0 (number 3 in "
+                  "Gmsh) is in the physical groups 1")));
   EXPECT_THROWS_WITH(
       ReadScene({path}, Measurement::kRequired,
                 {{}, RegionChoice::kEach, {}, {}}),
       "scene.msh: there are no regions that could have their own materials: "
-      "tetrahedron 0 "
+      "tetrahedron 0 .number 3 in Gmsh. "
       "is in the physical groups 1 \"body\" and 3; put it into one");
 }
 
@@ -266,10 +266,11 @@ TEST_F(GmshMeshTest, KnowsOfNodesThatGmshLeavesOut) {
 }
 
 TEST_F(GmshMeshTest, ErrsOnOtherVolumeElements) {
-  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
-                                   "5 19 2 1 1 10 2 3 7 5 10 2 3 7 5 10 2 3")),
-                     "mesh.msh: element number . is a .*, but the "
-                     "elements of a scene are tetrahedra and triangles");
+  EXPECT_THROWS_WITH(
+      Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
+                    "5 14 2 1 1 10 2 3 7 5 10 2 3 7 5 10 2 3 7")),
+      "mesh.msh: element number . is a .*, but the "
+      "elements of a scene are tetrahedra of 4 or 10 nodes");
 }
 
 TEST_F(GmshMeshTest, ErrsOnDamage) {
@@ -344,7 +345,8 @@ TEST_F(GmshMeshTest, ErrsOnElementsThatGmshLoses) {
 TEST_F(GmshMeshTest, ErrsOnTetrahedraThatComeTwice) {
   EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
                                    "5 4 2 2 1 2 10 3 5")),
-                     "mesh.msh: tetrahedra 0 and 1 have the same nodes; save "
+                     "mesh.msh: tetrahedra 0 and 1 .numbers 4 and 5 in Gmsh. "
+                     "have the same nodes; save "
                      "the mesh as .msh of version 4");
 }
 

@@ -70,6 +70,17 @@ TEST(SimplicesTest, LeaveOutThoseOfCollapsedEdges) {
   EXPECT_EQ(simplices.Cells().size(), 3U);
 }
 
+TEST(SimplicesTest, CountCollapsedCells) {
+  Simplices simplices(3);
+  simplices.Add(*FindCellShape(3, 6), {0, 1, 2, 3, 4, 5});
+  simplices.Add(*FindCellShape(3, 6), {0, 1, 2, 0, 4, 5});
+  simplices.Add(*FindCellShape(3, 8), {0, 1, 2, 2, 3, 4, 5, 5});
+  EXPECT_THAT(simplices.Notice(),
+              ::testing::StartsWith(
+                  "1 hexahedron (with collapsed edges) and 2 wedges (1 of them "
+                  "with collapsed edges) are read as 8 tetrahedra"));
+}
+
 TEST(SimplicesTest, TellFoldedAndFlatCells) {
   Simplices simplices(2);
   simplices.Add(*FindCellShape(2, 4), {0, 1, 2, 3});
@@ -184,72 +195,6 @@ TEST(MixedMeshes, OfAbaqusAreEstimatedWithTheirSurfaces) {
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, kTensileRatio, 1e-9);
 }
 
-// The block without pyramids, whose cells have middles of edges; those at x = 0
-// are off the straight line by `bend`.
-struct QuadraticBlock {
-  explicit QuadraticBlock(double bend) : linear(3, false) {
-    std::map<std::pair<int, int>, int> middles;
-    std::vector<Eigen::Vector3d> added;
-    for (const MixedBlock::Cell& cell : linear.cells) {
-      const CellShape& shape = *FindCellShape(3, int(cell.nodes.size()));
-      cells.push_back({cell.type == "C3D8" ? "C3D20" : "C3D15", cell.nodes});
-      for (const auto& [i, j] : shape.edges) {
-        const auto [a, b] = std::minmax(cell.nodes[i], cell.nodes[j]);
-        const int next = int(linear.nodes.cols()) + int(added.size());
-        const auto [place, is_new] = middles.insert({{a, b}, next});
-        if (is_new) {
-          const Eigen::Vector3d x = linear.nodes.col(a);
-          const Eigen::Vector3d y = linear.nodes.col(b);
-          added.emplace_back((x + y) / 2);
-          if (x(0) == 0 && y(0) == 0) {
-            added.back()(0) -= bend;
-          }
-        }
-        cells.back().nodes.push_back(place->second);
-      }
-    }
-    nodes.resize(3, linear.nodes.cols() + Eigen::Index(added.size()));
-    nodes.leftCols(linear.nodes.cols()) = linear.nodes;
-    for (std::size_t i = 0; i < added.size(); ++i) {
-      nodes.col(linear.nodes.cols() + Eigen::Index(i)) = added[i];
-    }
-  }
-
-  std::string Text() const {
-    std::ostringstream text;
-    text.precision(17);
-    text << "*NODE\n";
-    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
-      text << 10 + i << ", " << nodes(0, i) << ", " << nodes(1, i) << ", "
-           << nodes(2, i) << "\n";
-    }
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      text << "*ELEMENT, TYPE=" << cells[i].type << ", ELSET=EALL\n" << 100 - i;
-      for (std::size_t k = 0; k < cells[i].nodes.size(); ++k) {
-        text << (k % 15 == 14 ? ",\n" : ", ") << 10 + cells[i].nodes[k];
-      }
-      text << "\n";
-    }
-    text << "*NSET, NSET=LEFT\n";
-    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
-      text << (nodes(0, i) <= 0 ? std::to_string(10 + i) + "\n" : "");
-    }
-    return text.str();
-  }
-
-  MixedBlock linear;
-  Eigen::Matrix3Xd nodes;
-  std::vector<MixedBlock::Cell> cells;
-};
-
-double VolumeOf(const MeshFile& file) {
-  Mesh mesh;
-  mesh.kind = file.kind;
-  mesh.nodes = file.nodes;
-  mesh.elements = file.elements;
-  return ElementVolumes(mesh).sum();
-}
-
 TEST(MixedMeshes, OfQuadraticElementsHaveNewNodesInSets) {
   const TemporaryFolder folder;
   const QuadraticBlock block(0);
@@ -306,6 +251,37 @@ TEST(MixedMeshes, OfQuadraticElementsAreEstimated) {
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, kTensileRatio, 1e-7);
 }
 
+// Other elements than those that are fitted computed the displacements.
+TEST(MixedMeshes, CannotHaveComputedDisplacements) {
+  const TemporaryFolder folder;
+  const MixedBlock block(5);
+  folder.Write("mesh.inp", AbaqusText(block));
+  folder.Write("nodes.csv", TensileTable(block.nodes));
+  const std::string text = R"({"mesh": "mesh.inp", "origin": "computed",
+    "supports": [{"nodes": {"box": [[0, 0, 0], [2, 2, 0]]}}],
+    "cases": [{"displacement": {"nodes": "nodes.csv"}, "loads": []}]})";
+  const std::filesystem::path scene = folder.Write("scene.json", text);
+  EXPECT_THROWS_WITH(ReadScene({scene}, Measurement::kRequired),
+                     "the cells of '.*mesh.inp' were cut into tetrahedra, so "
+                     "that other elements computed them; give \"origin\"");
+  SceneChoices choices;
+  choices.origin = Origin::kMeasured;
+  EXPECT_EQ(ReadScene({scene}, Measurement::kRequired, choices).scene.origin,
+            Origin::kMeasured);
+}
+
+// Abaqus has the nodes between the layers last, other programs before.
+TEST(MixedMeshes, OfQuadraticElementsNeedTheirNodesInOrder) {
+  const TemporaryFolder folder;
+  QuadraticBlock block(0);
+  std::vector<int>& nodes = block.cells[0].nodes;
+  ASSERT_EQ(nodes.size(), 20U);
+  std::rotate(nodes.begin() + 12, nodes.begin() + 16, nodes.end());
+  EXPECT_THROWS_WITH(ReadMeshFile(folder.Write("mesh.inp", block.Text())),
+                     "element 100 of type C3D20 has node .* in the middle of "
+                     "its edge from node .*, but that node lies elsewhere");
+}
+
 // The regions of all parts of an element are those of the element.
 TEST(MixedMeshes, OfAbaqusKeepTheirSetsAsRegions) {
   const TemporaryFolder folder;
@@ -341,7 +317,7 @@ TEST(MixedMeshes, OfVtkKeepTheirArrays) {
   EXPECT_THROWS_WITH(
       ReadMeshFile(
           folder.Write("mesh.vtk", Replaced(text, "4 0 1 2 3", "4 0 1 3 2"))),
-      "cell 1 is a quad that is folded or flat; order its points as VTK does");
+      "cell 1 is a quad that is folded or flat; order its nodes as its format");
 }
 
 TEST(MixedMeshes, OfFebioHaveTheirFacesCut) {

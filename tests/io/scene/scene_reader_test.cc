@@ -435,11 +435,12 @@ TEST_F(SceneReaderTest, ErrsOnOtherCells) {
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 24")),
       "scene.vtk: cell 3 is a quadratic tetra, but cell 1 is a tetra; mesh the "
-      "specimen with cells of one kind, or with linear ones");
+      "specimen with cells of one kind, or with all linear or all quadratic "
+      "ones");
   EXPECT_THROWS_WITH(
-      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 26")),
-      "cell 3 is a quadratic wedge, but the cells of a scene are tetrahedra "
-      "and");
+      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 32")),
+      "cell 3 is a biquadratic quadratic wedge, but the cells of a scene are "
+      "tetrahedra of 4 or 10 nodes");
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 13")),
       "cell 3 is a wedge of 4 points where 6 are due");
