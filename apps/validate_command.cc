@@ -149,7 +149,7 @@ int RunValidate(const std::vector<std::string>& arguments) {
                                               compared.validations));
   files.Commit();
   PrintNotices(reading.notices);
-  return first.IsComplete() && !first.Total().IsOff() ? 0 : 1;
+  return first.IsComplete() && !first.IsOff() ? 0 : 1;
 }
 
 }  // namespace elastimate

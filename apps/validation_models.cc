@@ -65,6 +65,13 @@ std::vector<ValidationModel> ModelsToCompare(const Scene& scene,
                                              const EstimatorOptions& options) {
   std::vector<ValidationModel> models = {{"as given", scene, options}};
   for (const std::string& word : WordsOf(FLAGS_compare)) {
+    if (std::any_of(
+            models.begin(), models.end(),
+            [&](const ValidationModel& model) { return model.name == word; })) {
+      throw std::invalid_argument(AsGiven("compare") + " names " +
+                                  Printable(word) +
+                                  " twice; name each model once");
+    }
     models.push_back({word, SceneOfModel(scene, word), options});
   }
   for (ValidationModel& model : models) {

@@ -1,7 +1,6 @@
 #include "apps/validation_summary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "elastimate/core/text/numbers.h"
@@ -99,23 +98,18 @@ std::string Refusals(const Folds& folds, const CrossValidation& validation) {
 }
 
 std::string Meaning(const CrossValidation& validation) {
-  const Prediction total = validation.Total();
   if (!validation.IsComplete()) {
     return "NOT VALIDATED: a part could not be predicted\n";
   }
-  const std::string ratio = NumberText(total.ErrorRatio(), 2);
-  const auto is_off = [](const FoldPrediction& fold) {
-    return fold.prediction.IsOff();
-  };
-  if (total.IsOff() ||
-      std::any_of(validation.folds.begin(), validation.folds.end(), is_off)) {
+  if (validation.IsOff()) {
     return "PREDICTION IS OFF: the model misses what it has not seen by more "
            "than its stated errors, so that errors of parameters may be "
            "understated as well; compare models (--compare), or look where it "
            "is off (--out)\n";
   }
-  return "the model predicts what it has not seen within its stated errors (" +
-         ratio + " of them)\n";
+  return "the model predicts what it has not seen: its errors are " +
+         NumberText(validation.Total().ErrorRatio(), 2) +
+         " times the stated ones\n";
 }
 
 }  // namespace

@@ -226,6 +226,12 @@ bool CrossValidation::IsComplete() const {
                      [](const auto& fold) { return fold.why_not.empty(); });
 }
 
+bool CrossValidation::IsOff() const {
+  return Total().IsOff() ||
+         std::any_of(folds.begin(), folds.end(),
+                     [](const auto& fold) { return fold.prediction.IsOff(); });
+}
+
 CrossValidation CrossValidate(const Scene& scene, const Folds& folds,
                               const Estimator& estimator,
                               const EstimatorOptions& options,

@@ -62,6 +62,9 @@ struct CrossValidation {
   Prediction Total() const;
   /// Tells whether each fold was predicted.
   bool IsComplete() const;
+  /// Tells whether the differences of a fold, or of all together, are too large
+  /// (Prediction::IsOff).
+  bool IsOff() const;
 };
 
 /// Fits a scene without each of its folds in turn, and predicts what was

@@ -81,10 +81,11 @@ Eigen::MatrixXd MeasuredPositions(const Scene& scene) {
 Folds DividePoints(const Scene& scene, int num_folds) {
   const Eigen::MatrixXd positions = MeasuredPositions(scene);
   if (positions.cols() < num_folds) {
-    throw std::invalid_argument(std::to_string(positions.cols()) +
-                                " measured points cannot be divided into " +
+    const std::string most = std::to_string(positions.cols());
+    throw std::invalid_argument("the measurement has " + most +
+                                " points, which cannot be divided into " +
                                 std::to_string(num_folds) +
-                                " parts; measure more, or give --folds");
+                                " parts; give --folds=N of at most " + most);
   }
   Eigen::Index axis = 0;
   (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff())

@@ -26,7 +26,8 @@ TEST_F(ValidateCommand, ComparesModelsByWhatTheyHaveNotSeen) {
   const testing::ProgramRun run = Succeed(
       "validate scene.json --noise_sd=3.2e-7 --compare=one_material "
       "--folds=3 --json=v.json --out=v.vtu");
-  EXPECT_THAT(run.output, HasSubstr("within its stated errors"));
+  EXPECT_THAT(run.output, HasSubstr("the model predicts what it has not seen: "
+                                    "its errors are 1 times the stated ones"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "v.vtu"));
   const nlohmann::json json =
       nlohmann::json::parse(testing::ReadText(folder_ / "v.json"));
@@ -50,6 +51,11 @@ TEST_F(ValidateCommand, EndsWithOneWhereThePredictionIsOff) {
 TEST_F(ValidateCommand, RefusesWrongFlags) {
   Refuse("validate", "validate needs a scene file");
   Refuse("validate scene.json --folds=1 --out=v.vtu", "--folds=1");
+  Refuse("validate scene.json --folds=1000",
+         "points, which cannot be divided into 1000 parts; give --folds=N of "
+         "at most ");
+  Refuse("validate scene.json --compare=linear,linear",
+         "names linear twice; name each model once");
   Refuse("validate scene.json --hold_out=frames", "points or load_cases");
   Refuse("validate scene.json --hold_out=load_cases", "one load case");
   Refuse("validate scene.json --compare=rubber", "rubber is no model");
