@@ -13,6 +13,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -109,6 +110,43 @@ void HoldBox(
             self.scene);
 }
 
+// Holds the nodes of a box that moved as it was measured, or as a rigid face.
+void HoldMovedBox(
+    PythonScene& self, const Eigen::VectorXd& lower,
+    const Eigen::VectorXd& upper,
+    const std::optional<Eigen::Array<bool, Eigen::Dynamic, 1>>& components,
+    bool is_rigid) {
+  const Eigen::Index dimension = self.scene.mesh.Dimension();
+  const Eigen::Array<bool, Eigen::Dynamic, 1> held = components.value_or(
+      Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(dimension, true));
+  Supports& supports = self.scene.supports;
+  // It checks the box, and that no other support holds its nodes.
+  const std::size_t num_boxes = supports.boxes.size();
+  const ComponentMask before = supports.held;
+  HoldInBox(lower, upper, held, Eigen::VectorXd::Zero(dimension), self.scene);
+  supports.boxes.resize(num_boxes);
+  if (supports.unknown.size() == 0) {
+    supports.unknown.setConstant(before.rows(), before.cols(), false);
+  }
+  RigidFace face = {{}, held};
+  for (Eigen::Index node = 0; node < self.scene.mesh.NumNodes(); ++node) {
+    const auto x = self.scene.mesh.nodes.col(node).array();
+    if (!((x >= lower.array()).all() && (x <= upper.array()).all())) {
+      continue;
+    }
+    if ((before.col(node) && held).any()) {
+      throw std::invalid_argument(
+          "two supports hold node " + std::to_string(node) +
+          ", one of which moved; leave the node out of one of them");
+    }
+    face.nodes.push_back(int(node));
+    supports.unknown.col(node) = supports.unknown.col(node) || held;
+  }
+  if (is_rigid) {
+    supports.rigid_faces.push_back(std::move(face));
+  }
+}
+
 PointDisplacements Locate(const Mesh& mesh, const Numbers& positions,
                           const Numbers& displacement,
                           std::optional<double> given_tolerance) {
@@ -139,7 +177,9 @@ void AddCase(PythonScene& self, const std::vector<Load>& loads,
              const std::optional<Flags>& observed,
              const std::optional<Numbers>& points,
              const std::optional<Numbers>& point_displacement,
-             std::optional<double> tolerance, std::optional<double> noise_sd) {
+             std::optional<double> tolerance, std::optional<double> noise_sd,
+             const std::vector<std::tuple<std::vector<int>, Eigen::VectorXd,
+                                          Eigen::VectorXd>>& resultants) {
   LoadCase load_case;
   load_case.loads = loads;
   if (displacement) {
@@ -153,6 +193,9 @@ void AddCase(PythonScene& self, const std::vector<Load>& loads,
         Locate(self.scene.mesh, *points, *point_displacement, tolerance);
   }
   load_case.noise_sd = noise_sd;
+  for (const auto& [nodes, force, sd] : resultants) {
+    load_case.resultants.push_back({nodes, force, sd});
+  }
   self.scene.load_cases.push_back(std::move(load_case));
 }
 
@@ -394,6 +437,8 @@ void BindScene(py::module_& module) {
       .def("hold", &Hold, py::arg("held"), py::arg("displacement"))
       .def("hold_box", &HoldBox, py::arg("lower"), py::arg("upper"),
            py::arg("components"), py::arg("displacement"))
+      .def("hold_moved_box", &HoldMovedBox, py::arg("lower"), py::arg("upper"),
+           py::arg("components"), py::arg("is_rigid"))
       .def(
           "facets_in_box",
           [](const PythonScene& self, const Eigen::VectorXd& lower,
@@ -429,7 +474,7 @@ void BindScene(py::module_& module) {
       .def("add_case", &AddCase, py::arg("loads"), py::arg("displacement"),
            py::arg("observed"), py::arg("points"),
            py::arg("point_displacement"), py::arg("tolerance"),
-           py::arg("noise_sd"))
+           py::arg("noise_sd"), py::arg("resultants"))
       .def(
           "validate",
           [](const PythonScene& self) { ValidateScene(self.scene); },

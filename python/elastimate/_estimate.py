@@ -106,6 +106,8 @@ class Estimate:
         name = os.fspath(path)
         if not name.lower().endswith(".html"):
             raise ValueError(f"{name}: the name of a page must end in .html")
+        if not isinstance(title, str):
+            raise ValueError(f"title={title!r}; give a text, such as title={str(title)!r}")
         self._core.write_page(name, title, f"{self._call}.report({name!r})")
 
     def __str__(self) -> str:

@@ -61,11 +61,17 @@ def one_kind(
         if len(cells) != 1:
             raise ValueError(
                 f"the mesh has elements of {len(cells)} kinds ({', '.join(cells)}); "
-                "give elements of one kind, or save the mesh as a .vtu file, whose linear elements "
+                "give elements of one kind, or save the mesh as a .vtu file, whose elements "
                 "elastimate.read cuts into simplices"
             )
         (kind, cells) = next(iter(cells.items()))
-    connectivity = np.asarray(cells)
+    try:
+        connectivity = np.asarray(cells)
+    except ValueError:  # NumPy makes no array of rows of different lengths.
+        raise ValueError(
+            "the cells have different numbers of nodes; give elements of one kind, or save the mesh "
+            "as a .vtu file, whose elements elastimate.read cuts into simplices"
+        ) from None
     if connectivity.ndim != 2 or connectivity.dtype.kind not in "iu":
         raise ValueError(
             "the cells are no array of node numbers with one row for each element; "

@@ -23,13 +23,28 @@ class Box:
     """A part of space, bounds included: the corners have d coordinates [length].
 
     As a support it holds ``components`` (d flags; all by default) of its nodes at a
-    ``displacement`` [length], zero by default.
+    ``displacement`` [length], zero by default.  The displacement "measured" is for a support that
+    moved by amounts that the measurement at its nodes tells, and "rigid" for one that moved as a
+    rigid body, such as a grip.
     """
 
     lower: ArrayLike
     upper: ArrayLike
     components: Sequence[bool] | None = None
-    displacement: ArrayLike | None = None
+    displacement: ArrayLike | str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Resultant:
+    """The force [force], shape (d,), that supports exert on held nodes, as a load cell measured it.
+
+    NaN stands for a component that was not measured.  ``where`` is a Box or the numbers of nodes,
+    and ``sd`` the standard deviation of the components [force], one or d numbers.
+    """
+
+    force: ArrayLike
+    where: Union[Box, ArrayLike]
+    sd: ArrayLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +102,7 @@ class LoadCase:
     noise_sd       standard deviation of a measured component [length], if it is known
     tolerance      how far a point may lie outside the mesh [length]; by default a thousandth of the
                    diagonal of its bounding box
+    resultants     forces of supports that were measured
     """
 
     forces: ArrayLike | None = None
@@ -95,6 +111,7 @@ class LoadCase:
     points: ArrayLike | None = None
     noise_sd: float | None = None
     tolerance: float | None = None
+    resultants: Sequence[Resultant] = ()
 
 
 class Scene:
@@ -106,7 +123,7 @@ class Scene:
                 dict of one such array by its kind
     supports    which nodes are held: node numbers, flags of shape (n,) or (n, d), a Box, or a
                 list of boxes.  None for a specimen that nothing holds
-    forces, loads, displacements, points, noise_sd
+    forces, loads, displacements, points, noise_sd, resultants
                 the one load case (see LoadCase); or else
     cases       a list of LoadCase
     support_displacements
@@ -137,6 +154,7 @@ class Scene:
         displacements: ArrayLike | None = None,
         points: ArrayLike | None = None,
         noise_sd: float | None = None,
+        resultants: Sequence[Resultant] = (),
         cases: Sequence[LoadCase] | None = None,
         support_displacements: ArrayLike | None = None,
         kind: str | None = None,
@@ -165,12 +183,12 @@ class Scene:
             self._core.set_materials(list(materials))
         self._core.set_origin(origin)
         self._core.set_rigid_motion_free(rigid_motion_free)
-        one = LoadCase(forces, loads, displacements, points, noise_sd)
+        one = LoadCase(forces, loads, displacements, points, noise_sd, resultants=resultants)
         given = [forces, displacements, points, noise_sd]
-        if cases is not None and (loads or any(value is not None for value in given)):
+        if cases is not None and (loads or resultants or any(value is not None for value in given)):
             raise ValueError(
-                "cases are given, and so are forces, loads, displacements, points or noise_sd; give "
-                "these in the LoadCase that they belong to"
+                "cases are given, and so are forces, loads, displacements, points, noise_sd or "
+                "resultants; give these in the LoadCase that they belong to"
             )
         for k, case in enumerate([one] if cases is None else cases):
             _add_case(self._core, case, "" if cases is None else f"load case {k + 1}: ")
@@ -414,12 +432,7 @@ def _hold(core: _core.Scene, supports: Any, displacement: ArrayLike | None) -> N
         if displacement is not None:
             raise ValueError("boxes have displacements of their own; leave support_displacements out")
         for box in boxes:
-            core.hold_box(
-                _vector(box.lower),
-                _vector(box.upper),
-                None if box.components is None else np.asarray(box.components, dtype=bool),
-                None if box.displacement is None else _vector(box.displacement),
-            )
+            _hold_box(core, box)
         return
     at = (
         np.zeros((n, d))
@@ -427,6 +440,20 @@ def _hold(core: _core.Scene, supports: Any, displacement: ArrayLike | None) -> N
         else _rows("support_displacements", displacement, n, d, "node")
     )
     core.hold(_held(supports, n, d), at)
+
+
+def _hold_box(core: _core.Scene, box: Box) -> None:
+    lower, upper = _vector(box.lower), _vector(box.upper)
+    components = None if box.components is None else np.asarray(box.components, dtype=bool)
+    if not isinstance(box.displacement, str):
+        moved = None if box.displacement is None else _vector(box.displacement)
+        core.hold_box(lower, upper, components, moved)
+    elif box.displacement in ("measured", "rigid"):
+        core.hold_moved_box(lower, upper, components, box.displacement == "rigid")
+    else:
+        raise ValueError(
+            f'the displacement of a box is {box.displacement!r}; give "measured", "rigid" or a vector'
+        )
 
 
 def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
@@ -466,6 +493,30 @@ def _facets(core: _core.Scene, where: Any) -> NDArray[np.int32]:
     return facets
 
 
+def _core_resultant(
+    core: _core.Scene, resultant: Resultant, where: str
+) -> tuple[NDArray[np.int32], Floats, Floats]:
+    dimension = core.nodes.shape[1]
+    if not isinstance(resultant, Resultant):
+        raise ValueError(
+            f"{where}a resultant is of the type {type(resultant).__name__}; give a Resultant"
+        )
+    force = _vector(resultant.force)
+    sd = _vector(resultant.sd)
+    if force.shape != (dimension,) or sd.shape not in ((1,), (dimension,)):
+        raise ValueError(
+            f"{where}a resultant has a force of {len(force)} components and an sd of {len(sd)}; "
+            f"give {dimension} components, and one sd or {dimension}"
+        )
+    if isinstance(resultant.where, Box):
+        lower, upper = _vector(resultant.where.lower), _vector(resultant.where.upper)
+        inside = np.all((core.nodes >= lower) & (core.nodes <= upper), axis=1)
+        nodes = np.flatnonzero(inside)
+    else:
+        nodes = np.asarray(resultant.where).reshape(-1)
+    return nodes.astype(np.int32), force, np.broadcast_to(sd, (dimension,)).copy()
+
+
 def _core_load(core: _core.Scene, load: Load) -> _core._Load:
     if isinstance(load, Traction):
         return _core.Traction(_facets(core, load.where), np.atleast_2d(_vector(load.traction)))
@@ -484,6 +535,7 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
 def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
     n, d = core.nodes.shape
     loads = [_core_load(core, load) for load in case.loads]
+    resultants = [_core_resultant(core, one, where) for one in case.resultants]
     if case.forces is not None:
         loads.append(_core.NodalForces(_rows(f"{where}forces", case.forces, n, d, "node")))
     if case.points is not None:
@@ -492,7 +544,7 @@ def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
             raise ValueError(f"{where}points are given without displacements; give both")
         of_points = _rows(f"{where}displacements", case.displacements, len(points), d, "point")
         core.add_case(
-            loads, None, None, points, of_points, case.tolerance, case.noise_sd
+            loads, None, None, points, of_points, case.tolerance, case.noise_sd, resultants
         )
         return
     displacement = observed = None
@@ -502,4 +554,4 @@ def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
         if missing.any():
             observed = ~missing
             displacement = np.where(missing, 0, displacement)
-    core.add_case(loads, displacement, observed, None, None, None, case.noise_sd)
+    core.add_case(loads, displacement, observed, None, None, None, case.noise_sd, resultants)

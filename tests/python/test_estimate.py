@@ -148,6 +148,8 @@ def test_reports_are_pages_of_the_measurement(arrays, tmp_path):
     page = tmp_path / "page.html"
     with pytest.raises(ValueError, match="must end in .html"):
         scene.estimate("closed-form").report(tmp_path / "page.txt")
+    with pytest.raises(ValueError, match="title=5; give a text, such as title='5'"):
+        scene.estimate("closed-form").report(page, title=5)
     try:
         scene.estimate("iterative-fe", noise_sd=1e-5).report(page, "a cube")
     except ValueError as error:

@@ -203,3 +203,46 @@ def test_wrong_parameters_are_refused(arrays):
 def test_files_that_are_not_there_are_named():
     with pytest.raises(ValueError, match="missing.json"):
         em.read("missing.json")
+
+
+def test_a_grip_that_moved_and_a_load_cell_tell_the_modulus(arrays):
+    arrays.pop("forces")
+    arrays.pop("supports")
+    top = arrays["nodes"][:, 2].max()
+    size = arrays["nodes"].max(axis=0)
+    bottom = em.Box([0, 0, 0], [size[0], size[1], 0])
+    grip = ([0, 0, top], [size[0], size[1], top])
+    held = em.Scene(
+        **arrays, supports=[bottom, em.Box(*grip, displacement=[0, 0, 1e-4])]
+    ).simulate(E=5e3, nu=0.3)
+    # The force at E = 5e3 is found again from that of a scene where it is the load.
+    cell = em.Resultant([np.nan, np.nan, 2.0], em.Box(*grip), sd=0.01)
+    moved = em.Scene(
+        **arrays,
+        supports=[bottom, em.Box(*grip, displacement="rigid")],
+        displacements=held.displacements,
+        noise_sd=1e-8,
+        resultants=[cell],
+        origin="computed",
+    )
+    doubled = em.Scene(
+        **arrays,
+        supports=[bottom, em.Box(*grip, displacement="measured")],
+        displacements=held.displacements,
+        noise_sd=1e-8,
+        resultants=[em.Resultant([np.nan, np.nan, 4.0], em.Box(*grip), sd=0.01)],
+        origin="computed",
+    )
+    one, two = (scene.estimate("iterative-fe") for scene in (moved, doubled))
+    assert one["nu"].value == pytest.approx(0.3, abs=1e-3)
+    assert two["E"].value == pytest.approx(2 * one["E"].value, rel=1e-3)
+    with pytest.raises(ValueError, match='"measured", "rigid" or a vector'):
+        em.Scene(**arrays, supports=[em.Box(*grip, displacement="loose")])
+    with pytest.raises(ValueError, match="give 3 components, and one sd or 3"):
+        em.Scene(**arrays, supports=[bottom], resultants=[em.Resultant([1.0], [0], 1.0)])
+
+
+def test_cells_of_several_kinds_are_refused_in_a_sentence(arrays):
+    arrays["cells"] = [[0, 1, 2, 3], [0, 1, 2, 3, 4, 5, 6, 7]]
+    with pytest.raises(ValueError, match="the cells have different numbers of nodes"):
+        em.Scene(**arrays)
