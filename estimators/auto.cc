@@ -93,7 +93,8 @@ class Ladder {
     rung.estimator = estimator.Name();
     rung.element_order = scene.mesh.Order();
     if (!why_not.empty()) {
-      rung.decision = "passed over: " + why_not;
+      // Without advice, as the climb itself goes on to what would help.
+      rung.decision = "passed over: " + why_not.substr(0, why_not.find("; "));
       rungs_.push_back(rung);
       return false;
     }

@@ -268,6 +268,9 @@ struct Estimate {
   /// in fits of measured displacements, and for where supports end within
   /// them.  Also of what was refused, as far as that was corrected.
   std::optional<Eigen::Vector2d> discretization_correction;
+  /// The values of `parameters` at the minimum of a fit, which are not
+  /// corrected for the error of the elements; empty where none was corrected.
+  Eigen::VectorXd uncorrected_parameters;
   /// Points that lie too far off for noise, and were left out.
   std::vector<Outlier> outliers;
   /// The fitted displacement of a scene of unknown motion, with the motion but

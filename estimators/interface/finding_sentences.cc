@@ -416,8 +416,9 @@ Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
           ? "the displacement residual is " + times + "the given noise"
       : kind == ResidualKind::kForce
           ? "the force residual is " + times + "what the given noise explains"
-          : "the virtual work is out of balance by " + times +
-                "what the given noise explains";
+          : "the virtual work of the stresses differs from that of the loads "
+            "by " +
+                times + "what the given noise explains";
   return Warning(FindingCode::kResidualAboveNoise, what + kErrorsHold,
                  "check the given noise (--noise_sd), the mesh, the supports "
                  "and the loads");
@@ -453,8 +454,8 @@ Finding LargeResidual(double displacement_residual) {
 
 Finding VirtualWorkImbalance() {
   return Warning(FindingCode::kResidualAboveNoise,
-                 std::string("the virtual work is out of balance by more than "
-                             "noise explains") +
+                 std::string("the virtual work of the stresses differs from "
+                             "that of the loads by more than noise explains") +
                      kErrorsHold,
                  kCheckTheMeasurement);
 }
@@ -511,6 +512,7 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
   if (outliers.size() > kMostNames) {
     names += ", ...";
   }
+  names += ", counted from 0";
   return Warning(FindingCode::kOutliersLeftOut,
                  Counted(outliers.size(), "outlier") + " (" + names +
                      (outliers.size() == 1 ? ") is" : ") are") +
@@ -755,7 +757,8 @@ Finding ComputedByLinearElements(Severity severity) {
       "had computed the displacements";
   return severity == Severity::kError
              ? Error(FindingCode::kComputedByLinearElements, text,
-                     "if they did, give --origin=computed")
+                     "if they did, give --origin=computed, or simulate with a "
+                     "finer mesh if this one was cut into simplices")
              : Warning(FindingCode::kComputedByLinearElements,
                        text + "; the error bars include the difference",
                        "if they did, give --origin=computed; else try another "

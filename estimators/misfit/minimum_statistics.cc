@@ -279,6 +279,7 @@ void EnterElements(const Scene& scene, const FreeParameters& free,
                    const MinimumErrors& errors,
                    const Eigen::MatrixXd& by_elements, Estimate& estimate) {
   EnterParameters(scene, free, free.ParametersAt(errors.corrected), estimate);
+  estimate.uncorrected_parameters = free.ParametersAt(errors.variables);
   estimate.error_budget.discretization =
       ErrorsOfVariables(free, errors.corrected, by_elements);
   if (IsOneIsotropicMaterial(scene.materials)) {

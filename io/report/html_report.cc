@@ -1,6 +1,7 @@
 #include "elastimate/io/report/html_report.h"
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -15,6 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kPageFile = "report.html";
 constexpr const char* kPlaceOfData = "<!--data-->";
+constexpr const char* kTitle = "<title>elastimate report</title>";
 
 // Returns what the command line calls each parameter, and whether its errors
 // are relative.
@@ -34,6 +36,26 @@ std::string WithinHtml(const Json& json) {
     text += character == '<' ? "\\u003c" : std::string(1, character);
   }
   return text;
+}
+
+// Returns text as HTML shows it.
+std::string EscapedForHtml(const std::string& text) {
+  const std::map<char, std::string> escapes = {
+      {'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}};
+  std::string escaped;
+  for (const char character : text) {
+    const auto found = escapes.find(character);
+    escaped +=
+        found == escapes.end() ? std::string(1, character) : found->second;
+  }
+  return escaped;
+}
+
+void Replace(const std::string& place, const std::string& text,
+             std::string& html) {
+  if (const std::size_t found = html.find(place); found != std::string::npos) {
+    html.replace(found, place.size(), text);
+  }
 }
 
 }  // namespace
@@ -63,8 +85,9 @@ std::string HtmlReport(const std::string& page, const Scene& scene,
       {"frame", texts.frame ? Json(*texts.frame) : Json(nullptr)},
       {"specimen", PageSpecimen(scene, estimate, results)}};
   std::string html = page;
-  const std::string place = kPlaceOfData;
-  return html.replace(html.find(place), place.size(), WithinHtml(data));
+  Replace(kTitle, "<title>" + EscapedForHtml(texts.title) + "</title>", html);
+  Replace(kPlaceOfData, WithinHtml(data), html);
+  return html;
 }
 
 }  // namespace elastimate

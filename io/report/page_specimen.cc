@@ -239,7 +239,8 @@ class SpecimenWriter {
                              : Json(Floats(AtNodes(InSpace(displacement))))},
         {"is_fitted", fitted != nullptr},
         {"held", Base64(HeldMasks(k))},
-        {"loads", LoadsJson(k)},
+        {"moved", Base64(MovedMasks(k))},
+        {"loads", LoadsJson(k, displacement)},
         {"node_fields", node_fields},
         {"facet_fields", facet_fields},
         {"points", PointsJson(k, residual)}};
@@ -264,8 +265,46 @@ class SpecimenWriter {
     return {all.reshaped().begin(), all.reshaped().end()};
   }
 
-  // Nodal forces on the surface, and the resultants of load cells.
-  Json LoadsJson(Eigen::Index k) const {
+  // A bit for each component of each node that is held away from zero, or where
+  // the support moved by an amount that is not known.
+  std::vector<std::uint8_t> MovedMasks(Eigen::Index k) const {
+    const Supports& supports = SupportsOf(scene_, k);
+    std::vector<std::uint8_t> masks;
+    for (const int node : surface_.nodes) {
+      std::uint8_t mask = 0;
+      for (int i = 0; i < scene_.mesh.Dimension(); ++i) {
+        const bool is_moved =
+            supports.held(i, node) &&
+            (!supports.IsGiven(i, node) || supports.displacement(i, node) != 0);
+        mask |= is_moved ? 1U << i : 0U;
+      }
+      masks.push_back(mask);
+    }
+    return masks;
+  }
+
+  // Returns the shares of nodes in the area of the facets that they make up,
+  // one for each node of the mesh; equal shares where they make up none.
+  Eigen::VectorXd SharesOfArea(const std::vector<int>& nodes) const {
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(scene_.mesh.NumNodes());
+    std::vector<char> is_member(scene_.mesh.NumNodes(), 0);
+    for (const int node : nodes) {
+      is_member[node] = 1;
+    }
+    const Eigen::MatrixXi facets = BoundaryFacetsWhere(
+        scene_.mesh, [&](int node) { return is_member[node] != 0; });
+    for (const auto& facet : facets.colwise()) {
+      shares(facet) += WeightsOfFacet(scene_.mesh, facet).area;
+    }
+    if (facets.cols() == 0) {
+      shares(nodes).setOnes();
+    }
+    return shares / shares.sum();
+  }
+
+  // Nodal forces on the surface, and the resultants of load cells, each in the
+  // middle of its face, which moves by `displacement`.
+  Json LoadsJson(Eigen::Index k, const Eigen::MatrixXd& displacement) const {
     const LoadCase& load_case = scene_.load_cases[k];
     const Eigen::MatrixXd force = AssembleLoads(scene_.mesh, load_case.loads);
     std::vector<Eigen::Index> loaded;
@@ -284,12 +323,13 @@ class SpecimenWriter {
       const Eigen::VectorXd known =
           resultant.force.array().isNaN().select(0, resultant.force);
       if (!resultant.nodes.empty() && known.norm() > 0) {
-        loads.push_back(
-            {{"node", nullptr},
-             {"at", Numbers(scene_.mesh.nodes(Eigen::all, resultant.nodes)
-                                .rowwise()
-                                .mean())},
-             {"force", Numbers(known)}});
+        const Eigen::VectorXd shares = SharesOfArea(resultant.nodes);
+        loads.push_back({{"node", nullptr},
+                         {"at", Numbers(scene_.mesh.nodes * shares)},
+                         {"displacement", displacement.size() == 0
+                                              ? std::vector<double>(3, 0)
+                                              : Numbers(displacement * shares)},
+                         {"force", Numbers(known)}});
       }
     }
     return loads;

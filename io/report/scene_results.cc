@@ -34,10 +34,8 @@ std::optional<Eigen::VectorXd> FittedParameters(const Estimate& estimate) {
       return std::nullopt;
     }
   }
-  if (values.size() == 2 && estimate.discretization_correction) {
-    const Eigen::Vector2d& correction = *estimate.discretization_correction;
-    values(0) *= std::exp(-correction(0));
-    values(1) -= correction(1);
+  if (estimate.uncorrected_parameters.size() == values.size()) {
+    values = estimate.uncorrected_parameters;
   }
   return values.size() == 0 ? std::nullopt
                             : std::optional<Eigen::VectorXd>(values);

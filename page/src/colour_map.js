@@ -27,6 +27,17 @@ export function colourOfBand(band, count) {
   return colourOf(count === 1 ? 0.35 : (band + 0.2) / (count - 0.6));
 }
 
+/**
+ * Returns a colour for each value, the darker the larger; by their logarithms where they span more than a factor of ten.
+ * Values that are not known are in between.
+ */
+export function coloursOfValues(values) {
+  const known = values.filter(Number.isFinite);
+  const scale = Math.min(...known) > 0 && Math.max(...known) > 10 * Math.min(...known) ? Math.log : (value) => value;
+  const [least, largest] = [scale(Math.min(...known)), scale(Math.max(...known))];
+  return values.map((value) => colourOf(Number.isFinite(value) && largest > least ? 0.1 + (0.8 * (scale(value) - least)) / (largest - least) : 0.35));
+}
+
 export const css = ([red, green, blue]) => `rgb(${red}, ${green}, ${blue})`;
 
 /** Returns bands with round ends that hold all values, or null where no value is known. */

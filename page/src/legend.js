@@ -25,12 +25,12 @@ export function bandLegend({ lower, upper, count }) {
 }
 
 /** Explains the colour of each of some categories. */
-export function categoryLegend(labels) {
+export function categoryLegend(labels, colours) {
   return html(
     "ul",
     { class: "categories" },
     labels.map((label, i) =>
-      html("li", {}, svg("svg", { viewBox: "0 0 14 14", class: "swatch" }, svg("rect", { width: 14, height: 14, fill: css(colourOfBand(i, labels.length)), class: "patch" })), label),
+      html("li", {}, svg("svg", { viewBox: "0 0 14 14", class: "swatch" }, svg("rect", { width: 14, height: 14, fill: css(colours[i]), class: "patch" })), label),
     ),
   );
 }

@@ -66,7 +66,7 @@ function budgetOf(place) {
     {},
     html("h3", {}, `What the error of ${parameter.label} comes from`),
     budgetChart(parts, parameter.is_relative, `Parts of the error of ${parameter.label}`),
-    html("p", { class: "note" }, mend ? `The largest part becomes smaller by ${mend}.` : null),
+    html("p", { class: "note" }, mend ? `To reduce the largest part, ${mend}.` : null),
   );
 }
 
@@ -87,6 +87,12 @@ function labelOfRegion(region) {
   return [`region ${region}`, ...own.map((parameter) => `${parameter.label.split(" of ")[0]} = ${valueText(parameter)}`)].join(", ");
 }
 
+// Returns NaN where no parameter of the region tells.
+function valueOfRegion(region) {
+  const own = parameters.find((parameter) => [parameter.region].flat().includes(region));
+  return own?.value ?? NaN;
+}
+
 function firstField(specimen) {
   if (!report.usable) {
     return "residual";
@@ -104,7 +110,6 @@ function specimenSection(specimen, viewer) {
     "The specimen",
     html("p", {}, `${mesh.nodes} nodes, ${elementsText(mesh)}${planar}.${frame}${left}`),
     viewer.element,
-    html("p", { class: "keys" }, "■ held in all directions   ▲ held in the direction in which it points   → load", html("span", { class: "screen" }, ". Drag to turn, scroll to zoom.")),
     loadsOf(report),
   );
 }
@@ -134,7 +139,7 @@ function commandSection() {
 function draw() {
   document.title = `${data.title}: ${report.usable ? "usable" : "NOT USABLE"}`;
   const specimen = readSpecimen(data.specimen);
-  const viewer = new Viewer(specimen, { labelOfRegion, firstField: firstField(specimen) });
+  const viewer = new Viewer(specimen, { labelOfRegion, valueOfRegion, firstField: firstField(specimen) });
   const second = html(
     "div",
     { class: "second" },

@@ -7,6 +7,8 @@ const up = new three.Vector3(0, 1, 0);
 const dark = 0x1c2733;
 // A lightness between those of the lightest and the darkest band is seen on both.
 const between = 0x1b9aaa;
+// That of supports which moved, dark enough for any band.
+const red = 0xb3261e;
 
 // Draws the same shape at many places; `place(i, matrix)` says where and how large.
 export class Markers {
@@ -52,27 +54,33 @@ export function arrows(list, size, positionOf) {
 
 /**
  * Draws a cube at each node that is held in all directions, and a cone towards a node for each direction in which
- * another one is held.  `masks` has a bit for each held component, and `list` the nodes that are shown.
+ * another one is held, in red where the support moved.  `held` and `moved` have a bit for each component of each node,
+ * and `list` the nodes that are shown.
  */
-export function supports(list, masks, dimension, size, centre, positionOf) {
+export function supports(list, { held, moved }, dimension, size, centre, positionOf) {
   const all = (1 << dimension) - 1;
-  const cubes = list.filter((node) => masks[node] === all);
+  const cubes = list.filter((node) => held[node] === all).map((node) => ({ node, isMoved: moved[node] !== 0 }));
   const cones = list
-    .filter((node) => masks[node] !== all)
-    .flatMap((node) => axes.flatMap((axis, i) => (masks[node] & (1 << i) ? [{ node, axis }] : [])));
+    .filter((node) => held[node] !== all)
+    .flatMap((node) => axes.flatMap((axis, i) => (held[node] & (1 << i) ? [{ node, axis, isMoved: (moved[node] & (1 << i)) !== 0 }] : [])));
   const cone = new three.ConeGeometry(0.5, 1, 10).translate(0, -0.5, 0);
-  return [
-    new Markers(new three.BoxGeometry(0.8, 0.8, 0.8), dark, cubes.length, (i, factor, matrix) => {
-      matrix.compose(positionOf(cubes[i], factor), new three.Quaternion(), new three.Vector3(size, size, size));
-    }),
-    new Markers(cone, dark, cones.length, (i, factor, matrix) => {
-      const { node, axis } = cones[i];
-      const at = positionOf(node, factor);
-      const inwards = axis.clone().multiplyScalar(Math.sign(centre.clone().sub(at).dot(axis)) || 1);
-      const turn = new three.Quaternion().setFromUnitVectors(up, inwards);
-      matrix.compose(at, turn, new three.Vector3(size, size, size).multiplyScalar(1.4));
-    }),
-  ];
+  return [false, true].flatMap((isMoved) => {
+    const colour = isMoved ? red : dark;
+    const someCubes = cubes.filter((cube) => cube.isMoved === isMoved);
+    const someCones = cones.filter((one) => one.isMoved === isMoved);
+    return [
+      new Markers(new three.BoxGeometry(0.8, 0.8, 0.8), colour, someCubes.length, (i, factor, matrix) => {
+        matrix.compose(positionOf(someCubes[i].node, factor), new three.Quaternion(), new three.Vector3(size, size, size));
+      }),
+      new Markers(cone, colour, someCones.length, (i, factor, matrix) => {
+        const { node, axis } = someCones[i];
+        const at = positionOf(node, factor);
+        const inwards = axis.clone().multiplyScalar(Math.sign(centre.clone().sub(at).dot(axis)) || 1);
+        const turn = new three.Quaternion().setFromUnitVectors(up, inwards);
+        matrix.compose(at, turn, new three.Vector3(size, size, size).multiplyScalar(1.4));
+      }),
+    ];
+  });
 }
 
 /** Returns about `count` of the items, evenly from the list. */

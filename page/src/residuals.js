@@ -49,7 +49,7 @@ function numbersOf({ report }) {
   return [
     noise === null ? null : `noise of ${numberText(noise, 3)} (standard deviation of a component)`,
     residual.displacement_relative === null ? null : `residual of ${percentOf(residual.displacement_relative, "the measured displacement")}`,
-    residual.force_relative === null ? null : `forces out of balance by ${percentOf(residual.force_relative, "the load")}`,
+    residual.force_relative === null ? null : `forces of the measured displacement that differ from the loads by ${percentOf(residual.force_relative, "the load")}`,
     diagnostics.residual_correlation === null ? null : `correlation between neighbours of ${numberText(diagnostics.residual_correlation, 2)}`,
     diagnostics.outliers.length === 0 ? null : `${diagnostics.outliers.length} of the points left out as outliers`,
   ].filter(Boolean);

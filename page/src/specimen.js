@@ -13,17 +13,33 @@ function readPoints(points) {
   };
 }
 
+// What was measured may have outliers, which are drawn no farther than this times the length that 95 % of nodes move.
+const farthest = 2;
+
+function withoutOutliers(displacement, isFitted) {
+  if (!displacement || isFitted) {
+    return { displacement, numCut: 0 };
+  }
+  const all = lengths(displacement);
+  const most = farthest * [...all].sort((a, b) => a - b)[Math.floor(0.95 * (all.length - 1))];
+  const scales = all.map((length) => (most > 0 && length > most ? most / length : 1));
+  return { displacement: displacement.map((value, i) => value * scales[Math.floor(i / 3)]), numCut: scales.filter((scale) => scale < 1).length };
+}
+
 function readCase(loadCase) {
-  const displacement = floats(loadCase.displacement);
+  const isFitted = loadCase.is_fitted;
+  const { displacement, numCut } = withoutOutliers(floats(loadCase.displacement), isFitted);
   const ofNodes = Object.entries(loadCase.node_fields).map(([name, values]) => [name, floats(values)]);
   const ofFacets = Object.entries(loadCase.facet_fields).map(([name, values]) => [name, floats(values)]);
   if (displacement) {
-    ofNodes.unshift(["displacement", lengths(displacement)]);
+    ofNodes.unshift([isFitted ? "displacement" : "measured_displacement", lengths(displacement)]);
   }
   return {
     displacement,
-    isFitted: loadCase.is_fitted,
+    isFitted,
+    numCut,
     held: bytes(loadCase.held),
+    moved: bytes(loadCase.moved),
     loads: loadCase.loads,
     points: loadCase.points ? readPoints(loadCase.points) : null,
     fields: [

@@ -2,7 +2,6 @@
 // graphics processor.
 
 import * as three from "three";
-import { colourOfBand } from "./colour_map.js";
 
 const notMeasured = -1e30;
 
@@ -51,12 +50,9 @@ void main() {
 const edgeShader = `${moved}
 void main() { gl_Position = projectionMatrix * placed(); gl_Position.z -= 0.0004 * gl_Position.w; }`;
 
-function textureOfBands(count) {
-  const data = new Uint8Array(4 * count);
-  for (let band = 0; band < count; ++band) {
-    data.set([...colourOfBand(band, count), 255], 4 * band);
-  }
-  const texture = new three.DataTexture(data, count, 1);
+function textureOf(colours) {
+  const data = new Uint8Array(colours.flatMap((colour) => [...colour, 255]));
+  const texture = new three.DataTexture(data, colours.length, 1);
   texture.needsUpdate = true;
   return texture;
 }
@@ -142,15 +138,15 @@ export class Surface {
     this.edges.geometry.setAttribute("displacement", new three.BufferAttribute(vectorsAt(displacement, this.edgeNodes), 3));
   }
 
-  /** Shows a value of each node or of each facet; NaN is grey.  `bands` has the ends and the number of bands. */
-  setValues(values, isOfNodes, { lower, upper, count, hasLines }) {
+  /** Shows a value of each node or of each facet; NaN is grey.  `bands` has the ends of the bands and their colours. */
+  setValues(values, isOfNodes, { lower, upper, colours, hasLines }) {
     const places = isOfNodes ? this.cornerNodes : this.corners.map((corner) => Math.floor(corner / this.numCorners));
     const shown = Float32Array.from(places, (place) => (Number.isFinite(values[place]) ? values[place] : notMeasured));
     this.faces.geometry.setAttribute("value", new three.BufferAttribute(shown, 1));
-    this.uniforms.colours.value = textureOfBands(count);
+    this.uniforms.colours.value = textureOf(colours);
     this.uniforms.lower.value = lower;
     this.uniforms.upper.value = upper;
-    this.uniforms.bands.value = count;
+    this.uniforms.bands.value = colours.length;
     this.uniforms.hasLines.value = hasLines;
   }
 }

@@ -2,7 +2,7 @@
 
 import * as three from "three";
 import { lengths } from "./arrays.js";
-import { bandsOf, colourOfBand } from "./colour_map.js";
+import { bandsOf, colourOfBand, coloursOfValues } from "./colour_map.js";
 import { html } from "./elements.js";
 import { bandLegend, categoryLegend } from "./legend.js";
 import { arrows, balls, movedNode, someOf, supports } from "./markers.js";
@@ -30,17 +30,22 @@ function boundsOf(nodes) {
 }
 
 export class Viewer {
-  /** `labelOfRegion` tells what to write beside the colour of a region, and `firstField` what is shown first. */
-  constructor(specimen, { labelOfRegion, firstField }) {
+  /**
+   * `labelOfRegion` tells what to write beside the colour of a region, `valueOfRegion` its modulus, and `firstField` what
+   * is shown first.
+   */
+  constructor(specimen, { labelOfRegion, valueOfRegion, firstField }) {
     this.specimen = specimen;
     this.labelOfRegion = labelOfRegion;
+    this.valueOfRegion = valueOfRegion;
     this.firstField = firstField;
     this.bounds = boundsOf(specimen.nodes);
     this.box = html("div", { class: "stage" });
     this.legend = html("div", { class: "legend" });
     this.meaning = html("p", { class: "note" });
     this.readout = html("p", { class: "readout" });
-    this.element = html("div", { class: "viewer" }, this.#controls(), this.box, this.legend, this.meaning, this.readout);
+    this.keys = html("p", { class: "keys" });
+    this.element = html("div", { class: "viewer" }, this.#controls(), this.box, this.legend, this.meaning, this.readout, this.keys);
     this.#showCase(0);
   }
 
@@ -76,7 +81,8 @@ export class Viewer {
     );
     this.slider = html("input", { id: "factor", type: "range", min: 0, max: 100, value: 50, oninput: () => this.#update() });
     this.factorText = html("output", { for: "factor" });
-    this.sliderLabel = html("label", { class: "slider" }, "displacement ", this.slider, this.factorText);
+    this.sliderTitle = html("span");
+    this.sliderLabel = html("label", { class: "slider" }, this.sliderTitle, " ", this.slider, this.factorText);
     this.checks = {
       elements: check("elements", true),
       supports: check("supports", true),
@@ -108,6 +114,8 @@ export class Viewer {
       this.naturalFactor = 1;
     }
     this.sliderLabel.hidden = largest === 0;
+    this.sliderTitle.textContent = this.loadCase.isFitted ? "fitted displacement" : "measured displacement";
+    this.#explainMarkers();
     this.checks.points.label.hidden = !points || points.areNodes;
     const before = this.fieldChoice.value || this.firstField;
     this.fields = this.#fields();
@@ -120,21 +128,39 @@ export class Viewer {
     this.#showField();
   }
 
+  // Explains the markers that this load case has.
+  #explainMarkers() {
+    const { held, moved, loads, numCut } = this.loadCase;
+    const all = (1 << this.specimen.dimension) - 1;
+    const some = (masks, test) => masks.some((mask) => mask !== 0 && test(mask));
+    const keys = [
+      some(held, (mask) => mask === all) && "■ held in all directions",
+      some(held, (mask) => mask !== all) && "▲ held in the direction in which it points",
+      some(moved, () => true) && html("span", { class: "moved" }, "■ ▲ a support that moved"),
+      loads.length > 0 && "→ load",
+      numCut > 0 && `the measurement says that ${numCut === 1 ? "1 node" : `${numCut} nodes`} moved farther than is drawn`,
+    ].filter(Boolean);
+    this.keys.replaceChildren(
+      ...keys.flatMap((key, i) => (i === 0 ? [key] : ["   ", key])),
+      html("span", { class: "screen" }, `${keys.length > 0 ? ". " : ""}Drag to turn, scroll to zoom.`),
+    );
+  }
+
   #positionOf(node, factor) {
     return movedNode(this.specimen.nodes, this.loadCase.displacement, node, factor);
   }
 
   // Makes what differs between load cases.
   #drawCase() {
-    const { displacement, held, loads, points } = this.loadCase;
+    const { displacement, held, moved, loads, points } = this.loadCase;
     const { nodes, dimension } = this.specimen;
     this.surface.setDisplacement(displacement ?? new Float32Array(nodes.length));
     const { radius, centre } = this.bounds;
     const nodeAt = (node, factor) => this.#positionOf(node, factor);
     const heldNodes = someOf([...held.keys()].filter((node) => held[node] !== 0), mostSupports);
-    const loadAt = (load, factor) => (load.node === null ? new three.Vector3(...load.at) : nodeAt(load.node, factor));
+    const loadAt = (load, factor) => (load.node === null ? movedNode(load.at, load.displacement, 0, factor) : nodeAt(load.node, factor));
     this.#replace({
-      supports: supports(heldNodes, held, dimension, 0.03 * radius, centre, nodeAt),
+      supports: supports(heldNodes, { held, moved }, dimension, 0.03 * radius, centre, nodeAt),
       loads: [arrows(loads, 0.28 * radius, loadAt)],
       points: points && !points.areNodes ? [this.#balls(points, () => [70, 80, 90])] : [],
     });
@@ -166,14 +192,17 @@ export class Viewer {
     const isOfRegions = this.field?.name === "region";
     const categories = this.field && !this.field.isOfNodes && !this.field.isOfPoints ? valuesOf(this.field.values) : [];
     if (categories.length > 0 && categories.length <= (isOfRegions ? mostRegions : mostValues)) {
-      this.bands = { lower: -0.5, upper: categories.length - 0.5, count: categories.length, hasLines: false };
+      const colours = coloursOfValues(isOfRegions ? categories.map(this.valueOfRegion) : categories);
+      this.bands = { lower: -0.5, upper: categories.length - 0.5, colours, hasLines: false };
       this.shown = Float32Array.from(this.field.values, (value) => (Number.isFinite(value) ? categories.indexOf(value) : NaN));
-      this.legend.replaceChildren(categoryLegend(categories.map(isOfRegions ? this.labelOfRegion : (value) => `${words.title} ${numberText(value, 5)}`)));
+      this.legend.replaceChildren(categoryLegend(categories.map(isOfRegions ? this.labelOfRegion : (value) => `${words.title} ${numberText(value, 5)}`), colours));
     } else {
       const ends = this.field ? bandsOf(this.field.values) : null;
-      this.bands = { ...(ends ?? { lower: 0, upper: 1, count: 1 }), hasLines: this.field?.isOfNodes ?? false };
+      const { lower, upper, count } = ends ?? { lower: 0, upper: 1, count: 1 };
+      const colours = Array.from({ length: count }, (_, band) => colourOfBand(band, count));
+      this.bands = { lower, upper, colours, hasLines: this.field?.isOfNodes ?? false };
       this.shown = this.field?.values ?? [];
-      this.legend.replaceChildren(...(ends ? [bandLegend(this.bands)] : []));
+      this.legend.replaceChildren(...(ends ? [bandLegend(ends)] : []));
     }
     if (this.surface) {
       this.#colour();
@@ -186,9 +215,9 @@ export class Viewer {
     this.surface.setValues(isOfPoints ? [] : this.shown, this.field?.isOfNodes ?? true, this.bands);
     const { points } = this.loadCase;
     if (points && !points.areNodes) {
-      const { lower, upper, count } = this.bands;
-      const bandOf = (value) => Math.min(Math.floor(((value - lower) / (upper - lower)) * count), count - 1);
-      this.#replace({ points: [this.#balls(points, (i) => (isOfPoints ? colourOfBand(bandOf(this.shown[i]), count) : [70, 80, 90]))] });
+      const { lower, upper, colours } = this.bands;
+      const colourOf = (value) => colours[Math.min(Math.floor(((value - lower) / (upper - lower)) * colours.length), colours.length - 1)];
+      this.#replace({ points: [this.#balls(points, (i) => (isOfPoints ? colourOf(this.shown[i]) : [70, 80, 90]))] });
     }
   }
 

@@ -13,17 +13,17 @@ export const causes = {
   prior: "the prior",
 };
 
-/** Returns what makes each error smaller. */
+/** Returns what to do to make each error smaller. */
 export const mendsOfCauses = {
-  noise: "more points or frames, or larger displacements",
-  bias: "--estimator=auto",
-  model: "supports, loads and materials as in the experiment",
-  outliers: "a look at a few points with large residuals",
-  discretization: "a finer mesh",
-  law: "larger deformations, or a law that you know",
-  kinematics: "--estimator=auto, or smaller loads",
-  section: "the distance from the outermost points to the free edges",
-  prior: "a tighter prior",
+  noise: "measure more points or frames, or larger displacements",
+  bias: "use --estimator=auto",
+  model: "describe supports, loads and materials as they are in the experiment",
+  outliers: "look at the few points with large residuals",
+  discretization: "use a finer mesh",
+  law: "measure larger deformations, or name the law if you know it",
+  kinematics: "use --estimator=auto, or smaller loads",
+  section: "measure how far the outermost points are from the free edges, and give that margin",
+  prior: "give a tighter prior",
 };
 
 /** Returns what a parameter is, for those who do not use it every day. */
@@ -44,8 +44,12 @@ export function longLabel(label) {
 /** Returns the fields that are drawn on the specimen, with what they mean. */
 export const fields = {
   displacement: {
-    title: "displacement",
-    meaning: "How far each point moved.",
+    title: "fitted displacement",
+    meaning: "How far each point moves in the fitted model.",
+  },
+  measured_displacement: {
+    title: "measured displacement",
+    meaning: "How far each point moved, as it was measured: there is no fit to draw.",
   },
   residual: {
     title: "residual",
@@ -63,7 +67,7 @@ export const fields = {
   },
   force_residual: {
     title: "force residual",
-    meaning: "The force at each node that the measured displacement leaves out of balance.",
+    meaning: "At each node, the difference between the load and the force that the measured displacement needs.",
   },
   region: { title: "regions", meaning: "The regions of the mesh." },
   youngs_modulus: { title: "Young's modulus", meaning: "How stiff each part is." },

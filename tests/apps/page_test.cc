@@ -165,6 +165,48 @@ TEST_F(Page, HasAsMuchResidualAsTheReportSays) {
   EXPECT_NEAR(Vectors(points["residual"]).norm() /
                   Vectors(points["displacement"]).norm(),
               data["report"]["residual"]["displacement_relative"], 1e-5);
+  EXPECT_THAT(Text(), HasSubstr("<title>block/scene.json</title>"));
+}
+
+// Parameters are corrected for the error of the elements behind a fit, also
+// those of a law that is given, but what it leaves is that of its minimum.
+TEST_F(Page, HasTheResidualOfAFitOfLargeStrains) {
+  Simulate("cuboid --cells=3,2,2 --elements=tet4",
+           "--material=neo_hookean --order=2 --noise=0.002");
+  Succeed(
+      "report measured.vtu --estimator=iterative-fe --material=neo_hookean "
+      "--out=report.html");
+  const json data = Data();
+  const json& points = data["specimen"]["cases"][0]["points"];
+  EXPECT_NEAR(Vectors(points["residual"]).norm() /
+                  Vectors(points["displacement"]).norm(),
+              data["report"]["residual"]["displacement_relative"], 1e-5);
+}
+
+// A face that moved with a load cell: its arrow is in the middle of its area,
+// which is not the mean of its nodes.
+TEST_F(Page, HasResultantsInTheMiddleOfTheirFaces) {
+  testing::WriteText(folder_ / "mesh.inp",
+                     "*NODE\n1,0,0\n2,2,0\n3,2,2\n4,0,2\n5,2,0.5\n"
+                     "*ELEMENT, TYPE=CPS3\n1,1,2,5\n2,1,5,4\n3,4,5,3\n");
+  testing::WriteText(folder_ / "u.csv",
+                     "node,ux,uy\n1,0,0\n2,0.01,0\n3,0.01,0\n4,0,0\n"
+                     "5,0.01,0\n");
+  testing::WriteText(folder_ / "scene.json", R"({"mesh": "mesh.inp",
+    "model": "plane_stress", "thickness": 1,
+    "supports": [{"nodes": {"box": [[0, 0], [0, 2]]}},
+                 {"nodes": {"box": [[2, 0], [2, 2]]}, "displacement": "rigid"}],
+    "cases": [{"displacement": {"nodes": "u.csv"}, "noise_sd": 1e-4,
+               "loads": [{"type": "resultant", "value": [1, null], "sd": 0.01,
+                          "surface": {"box": [[2, 0], [2, 2]]}}]}]})");
+  EXPECT_LE(Run("report scene.json --nu=0.3 --out=report.html").exit_code, 1);
+  const json& load_case = Data()["specimen"]["cases"][0];
+  EXPECT_EQ(load_case["loads"][0]["at"], json({2.0, 1.0, 0.0}));
+  const auto moved = Numbers<std::uint8_t>(load_case["moved"]);
+  const auto held = Numbers<std::uint8_t>(load_case["held"]);
+  ASSERT_EQ(moved.size(), 5);
+  EXPECT_EQ((held.array() == 3).count(), 5);
+  EXPECT_EQ((moved.array() == 3).count(), 3);
 }
 
 // The same two solutions as `simulate` computes them, at the parameters of the
@@ -243,6 +285,7 @@ TEST_F(Page, QuotesWhatWouldEndItsData) {
   Succeed("report \"<!--<script>a b'.vtu\" --out=report.html");
   const json data = Data();
   EXPECT_EQ(data["title"], "<!--<script>a b'.vtu");
+  EXPECT_THAT(Text(), HasSubstr("<title>&lt;!--&lt;script&gt;a b'.vtu<"));
   EXPECT_EQ(data["command"],
             R"(elastimate report '<!--<script>a b'\''.vtu' --out=report.html)");
 }
