@@ -312,8 +312,7 @@ int RunOne(const std::vector<std::string>& arguments,
                       {Sources(arguments), page->command, report, ""});
   };
   progress.reset();
-  for (const std::string& sentence :
-       OutlierLines(estimate.outliers, reading.measured_lines)) {
+  for (const std::string& sentence : OutlierLines(estimate.outliers, reading)) {
     reading.notices.push_back(sentence);
   }
   WriteReport(estimate, reported, options, {read_seconds, SecondsSince(start)},

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "elastimate/estimators/interface/estimate.h"
-#include "elastimate/io/text/file_lines.h"
+#include "elastimate/io/scene/scene_reader.h"
 
 namespace elastimate {
 
-/// Returns a sentence for each file with outliers, as far as measurements are
-/// lines of text (SceneReading): "points.csv: 3 outliers are on the lines 6,
-/// 10, 11".  Where there are many, it names the first.
-std::vector<std::string> OutlierLines(
-    const std::vector<Outlier>& outliers,
-    const std::vector<std::vector<FileLines>>& measured_lines);
+/// Returns a sentence for each file with outliers: "points.csv: 3 outliers are
+/// on the lines 6, 10, 11" or, where measurements are no lines of text,
+/// "mesh.msh: 2 outliers are at the nodes 12, 17 of Gmsh".  Where there are
+/// many, it names the first.
+std::vector<std::string> OutlierLines(const std::vector<Outlier>& outliers,
+                                      const SceneReading& reading);
 
 }  // namespace elastimate
 

@@ -16,7 +16,7 @@ picture() {
   local name=$1
   shift
   "$program" report "$@" --out="$work/$name.html" 2>/dev/null |
-    grep -E '^(status|Young|Poisson|E |nu |E of|nu of|materials|regions|law chosen|map)' | sed "s/^/$name: /"
+    grep -E '^(status|Young|Poisson|E |nu |[EG]_|nu_|E of|nu of|materials|regions|law chosen|map)' | sed "s/^/$name: /"
   sed "s|</head>|<style>${style//$'\n'/ }</style></head>|" "$work/$name.html" >"$work/picture.html"
   chromium --headless --no-sandbox --enable-unsafe-swiftshader --hide-scrollbars --window-size=760,500 \
     --virtual-time-budget=5000 --screenshot="$work/picture.png" "$work/picture.html" >/dev/null 2>&1
@@ -30,3 +30,5 @@ picture steel_plate examples/steel_plate/plate.json --estimator=auto
 picture bent_arm examples/bent_arm/scene.json --estimator=auto
 picture cook_membrane examples/cook_membrane/scene.json --estimator=iterative-fe
 picture three_regions examples/three_regions/block.vtu --regions=merge --estimator=auto
+picture indenter examples/indenter/scene.json --estimator=auto --kinematics=small
+picture carbon_plate examples/carbon_plate/scene.json --estimator=auto
