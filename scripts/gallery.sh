@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 
 # Leaves the specimen and the legend alone.
 style='body > *:not(main), main > *:not(:has(.stage)), main h2, .viewer ~ *, .viewer > :first-child,
-  .viewer .readout { display: none !important }  main * { margin-top: 0 !important }'
+  .viewer .readout, .viewer .keys { display: none !important }  main * { margin-top: 0 !important }'
 
 # picture NAME ARGUMENTS: writes docs/gallery/NAME.png from the page of an estimate.
 picture() {
