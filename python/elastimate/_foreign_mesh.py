@@ -19,6 +19,16 @@ _KINDS: dict[Any, str] = {
     "quad9": "quad9", 28: "quad9",
 }  # fmt: skip
 
+# Cells that are cut as a file is read, and whether they are planar.
+_CUT: dict[Any, bool] = {
+    "pyramid": False, 14: False,
+    "wedge": False, 13: False,
+    "hexahedron20": False, 25: False,
+    "wedge15": False, 26: False,
+    "pyramid13": False, 27: False,
+    "quad8": True, 23: True,
+}  # fmt: skip
+
 NODES_OF_KIND = {
     "tet4": 4, "tet10": 10, "curved_tet10": 10, "hex8": 8, "hex27": 27,
     "tri3": 3, "tri6": 6, "curved_tri6": 6, "quad4": 4, "quad9": 9,
@@ -41,6 +51,12 @@ def take_mesh(mesh: Any) -> tuple[NDArray[np.float64], dict[str, NDArray[Any]]]:
     unknown = [str(name) for name in mesh.cells_dict if name not in _KINDS]
     solid = {kind: of_kind for kind, of_kind in cells.items() if not is_planar(kind)}
     chosen = solid or cells
+    cut = [name for name in mesh.cells_dict if name in _CUT and not (_CUT[name] and solid)]
+    if cut:
+        raise ValueError(
+            f"the mesh has cells that are to be cut ({', '.join(map(str, cut))}); save it as a .vtu "
+            "file, whose cells elastimate.read cuts into simplices"
+        )
     if not chosen:
         raise ValueError(
             "the mesh has no cells of a kind that elastimate knows"

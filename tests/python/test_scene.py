@@ -246,3 +246,12 @@ def test_cells_of_several_kinds_are_refused_in_a_sentence(arrays):
     arrays["cells"] = [[0, 1, 2, 3], [0, 1, 2, 3, 4, 5, 6, 7]]
     with pytest.raises(ValueError, match="the cells have different numbers of nodes"):
         em.Scene(**arrays)
+
+
+def test_cells_that_are_to_be_cut_are_not_left_out(arrays):
+    mesh = SimpleNamespace(
+        points=arrays.pop("nodes"),
+        cells_dict={"tetra": arrays.pop("cells"), "wedge": np.array([[0, 1, 2, 3, 4, 5]])},
+    )
+    with pytest.raises(ValueError, match=r"cells that are to be cut \(wedge\); save it as a .vtu"):
+        em.Scene(mesh, **arrays)
