@@ -18,15 +18,15 @@ bool IsQuadratic(const FileCell& cell) {
 }
 
 /// Tells whether an edge that is a parabola may have this node in its middle:
-/// the parabola does not turn back, and is not more bent than one around a
-/// semicircle.
+/// the parabola does not turn back, and is hardly more bent than one around a
+/// semicircle.  An edge without a length may have any.
 bool MayBeInTheMiddle(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                       const Eigen::Vector3d& middle) {
   const Eigen::Vector3d edge = to - from;
   const Eigen::Vector3d off = middle - (from + to) / 2;
   const double along = off.dot(edge) / edge.squaredNorm();
   const double across = (off - along * edge).norm() / edge.norm();
-  return std::abs(along) < 0.25 && across < 0.6;
+  return edge.isZero(0) || (std::abs(along) < 0.25 && across < 0.6);
 }
 
 /// Throws for nodes in another order than that of edges.

@@ -187,11 +187,12 @@ TEST_F(Page, HasTheResidualOfAFitOfLargeStrains) {
 // which is not the mean of its nodes.
 TEST_F(Page, HasResultantsInTheMiddleOfTheirFaces) {
   testing::WriteText(folder_ / "mesh.inp",
-                     "*NODE\n1,0,0\n2,2,0\n3,2,2\n4,0,2\n5,2,0.5\n"
-                     "*ELEMENT, TYPE=CPS3\n1,1,2,5\n2,1,5,4\n3,4,5,3\n");
+                     "*NODE\n1,0,0\n2,2,0\n3,2,2\n4,0,2\n5,2,0.5\n6,1,1\n"
+                     "*ELEMENT, TYPE=CPS3\n1,1,2,6\n2,2,5,6\n3,5,3,6\n"
+                     "4,3,4,6\n5,4,1,6\n");
   testing::WriteText(folder_ / "u.csv",
                      "node,ux,uy\n1,0,0\n2,0.01,0\n3,0.01,0\n4,0,0\n"
-                     "5,0.01,0\n");
+                     "5,0.01,0\n6,0.005,0\n");
   testing::WriteText(folder_ / "scene.json", R"({"mesh": "mesh.inp",
     "model": "plane_stress", "thickness": 1,
     "supports": [{"nodes": {"box": [[0, 0], [0, 2]]}},
@@ -204,7 +205,7 @@ TEST_F(Page, HasResultantsInTheMiddleOfTheirFaces) {
   EXPECT_EQ(load_case["loads"][0]["at"], json({2.0, 1.0, 0.0}));
   const auto moved = Numbers<std::uint8_t>(load_case["moved"]);
   const auto held = Numbers<std::uint8_t>(load_case["held"]);
-  ASSERT_EQ(moved.size(), 5);
+  ASSERT_EQ(moved.size(), 6);
   EXPECT_EQ((held.array() == 3).count(), 5);
   EXPECT_EQ((moved.array() == 3).count(), 3);
 }
