@@ -217,9 +217,9 @@ TEST_F(AbaqusMeshTest, ReadsPlanarElementsWithTheirSection) {
             Eigen::Vector2i(1, 2));
   EXPECT_EQ(*Read(Replaced(text, "CPS4R", "CPE4")).model, 2);
   EXPECT_THROWS_WITH(
-      ReadWith(
-          Replaced(text, "*SOLID", "*ELEMENT, TYPE=CPE3\n2, 1, 2, 3\n*SOLID"),
-          R"("supports": [], "cases": [{"loads": []}])"),
+      ReadWith(Replaced(text, "*ELEMENT",
+                        "5, 2, 0\n*ELEMENT, TYPE=CPE3\n2, 2, 5, 3\n*ELEMENT"),
+               R"("supports": [], "cases": [{"loads": []}])"),
       "mesh.inp: some of its elements are in plane stress .CPS. and others in "
       "plane strain .CPE., but a scene has one model; give --model=");
 }

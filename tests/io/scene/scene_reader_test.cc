@@ -439,7 +439,7 @@ TEST_F(SceneReaderTest, ErrsOnOtherCells) {
       "ones");
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 32")),
-      "cell 3 is a biquadratic quadratic wedge, but the cells of a scene are "
+      "cell 3 is a bi quadratic quadratic wedge, but the cells of a scene are "
       "tetrahedra of 4 or 10 nodes");
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 13")),
