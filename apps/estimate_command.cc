@@ -384,7 +384,7 @@ void ApplyComputingFlags() {
                                 "; it must not be negative");
   }
   if (FLAGS_threads > 0) {
-    SetBlasThreads(FLAGS_threads);
+    SetThreads(FLAGS_threads);
   }
 }
 

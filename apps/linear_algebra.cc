@@ -1,6 +1,7 @@
 #include "apps/linear_algebra.h"
 
 #include <dlfcn.h>
+#include <omp.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -144,7 +145,8 @@ void UseBlasKernelsOfProcessor(char** argv) {
   execv("/proc/self/exe", argv);
 }
 
-void SetBlasThreads(int num_threads) {
+void SetThreads(int num_threads) {
+  omp_set_num_threads(num_threads);
   openblas_set_num_threads(std::min(num_threads, LargestNumThreads()));
 }
 

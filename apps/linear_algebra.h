@@ -16,9 +16,9 @@ std::string DescribeBlas();
 /// last word.
 void UseBlasKernelsOfProcessor(char** argv);
 
-/// Sets the threads of the BLAS, at most to the number that fits into the
-/// memory that the process may take.
-void SetBlasThreads(int num_threads);
+/// Sets the threads of OpenMP and those of the BLAS; of the latter, at most as
+/// many as fit into the memory that the process may take.
+void SetThreads(int num_threads);
 
 /// Has the BLAS take the memory with which it works, for which it would wait
 /// forever when it is not there.  Throws std::runtime_error where the process

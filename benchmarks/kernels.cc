@@ -511,7 +511,7 @@ nlohmann::ordered_json Describe(const std::map<int, MachineLimits>& limits) {
 }  // namespace
 
 KernelTimes TimeKernels(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
+  SetThreads(1);
   progress.Show("kernels: memory bandwidth and peak flops");
   std::map<int, MachineLimits> limits;
   for (const int threads : {1, 2}) {

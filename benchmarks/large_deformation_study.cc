@@ -282,7 +282,7 @@ Table MakeCellTable(bool is_quick, Progress& progress) {
 }  // namespace
 
 StudyResult RunLargeDeformationStudy(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
+  SetThreads(1);
   progress.Show("large_deformation: limits");
   const Table limits = LargeDeformationLimits();
   const Table bias = MakeBiasTable(is_quick, progress);

@@ -178,7 +178,7 @@ std::vector<Run> MeasureSizes(const std::string& name,
 }  // namespace
 
 StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
+  SetThreads(1);
   const std::map<int, double> scene_memory =
       SceneMemory(Sizes(is_quick), progress);
   Table table("scaling",

@@ -239,7 +239,7 @@ StudyResult RunSolverStudy(bool is_quick, Progress& progress) {
                     std::to_string(tetrahedra) + " tetrahedra, " +
                     variant.solver);
       const ProcessReport report = RunInChildProcess(kLimits, [&] {
-        SetBlasThreads(variant.threads);
+        SetThreads(variant.threads);
         return AsText(MeasureSolver(body, variant.solver));
       });
       std::vector<double> values(8, kUnknown);

@@ -383,7 +383,7 @@ void RunMethods(const Specimen& specimen, const World& world, double deviation,
 }  // namespace
 
 StudyResult RunSpeedAccuracyStudy(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
+  SetThreads(1);
   Tables tables;
   nlohmann::ordered_json num_trials;
   for (const Specimen& specimen : Specimens(is_quick)) {

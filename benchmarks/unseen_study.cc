@@ -429,7 +429,7 @@ class UnseenStudy {
 }  // namespace
 
 StudyResult RunUnseenStudy(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
+  SetThreads(1);
   UnseenStudy study(is_quick ? QuickExtent() : FullExtent());
   study.Run(progress);
   return {

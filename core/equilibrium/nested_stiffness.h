@@ -60,10 +60,8 @@ class NestedStiffness {
   const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
     return finer_[space - 1].diagonal_blocks;
   }
-  /// Estimates the largest eigenvalue of D^-1 K for the diagonal blocks D of a
-  /// finer space without supports; the estimate may be a tenth too small.
-  /// Supports do not make the eigenvalues larger.  The result is NaN where K is
-  /// seen not to be positive definite.
+  /// Returns LargestEigenvalue of a finer space without supports.  Supports do
+  /// not make the eigenvalues larger.
   double LargestEigenvalue(std::size_t space) const {
     return finer_[space - 1].largest_eigenvalue;
   }
@@ -84,22 +82,6 @@ class NestedStiffness {
   std::vector<Finer> finer_;
   int num_passes_ = 0;
 };
-
-/// Inverts each block of DiagonalBlocks on its free components, and leaves
-/// zeros in the rows and columns of the held ones.  `is_free` is 1 or 0 for
-/// each degree of freedom.  The inverses stand side by side as the blocks do.
-[[nodiscard]] Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
-                                            const Eigen::VectorXd& is_free);
-
-/// Multiplies the rows of each node by its block: num_dofs x n.
-[[nodiscard]] Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
-                                             const Eigen::MatrixXd& columns);
-
-/// Sets x to keep x + scale B (a - b) for such blocks B, in one pass over
-/// memory.
-void RelaxByBlocks(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
-                   const Eigen::MatrixXd& b, double keep, double scale,
-                   Eigen::MatrixXd& x);
 
 }  // namespace elastimate
 

@@ -7,10 +7,6 @@
 namespace elastimate {
 namespace {
 
-// The smoother damps eigenvalues of D^-1 K between these shares of the largest
-// one, which is an estimate.  The rest is left to the coarser space.
-constexpr double kUpper = 1.2;
-constexpr double kLower = 0.1;
 // An iterative solver of the coarsest space need not be more accurate than the
 // preconditioner that it is part of.
 constexpr double kCoarseTolerance = 1e-2;
@@ -27,8 +23,7 @@ RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
       }),
       tolerance_(tolerance) {
   for (const Supports* const of_space : supports) {
-    spaces_.push_back(
-        {(!of_space->held).cast<double>().matrix().reshaped(), {}});
+    is_free_.emplace_back((!of_space->held).cast<double>().matrix().reshaped());
   }
 }
 
@@ -38,22 +33,36 @@ bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
   if (finest_) {
     return FactorizeFinest();
   }
-  if (!coarsest_.FactorizeBlocks(stiffness.CoarsestBlocks())) {
-    return false;
-  }
-  for (std::size_t i = 1; i < spaces_.size(); ++i) {
-    if (!(stiffness.LargestEigenvalue(i) > 0)) {
+  return coarsest_.FactorizeBlocks(stiffness.CoarsestBlocks()) && SetUpCycle();
+}
+
+bool RefinedStiffness::SetUpCycle() {
+  cycle_.clear();
+  for (std::size_t i = 1; i < is_free_.size(); ++i) {
+    CycleSpace& space = cycle_.emplace_back();
+    space.largest_eigenvalue = stiffness_->LargestEigenvalue(i);
+    if (!(space.largest_eigenvalue > 0)) {
       return false;
     }
-    spaces_[i].inverse_blocks =
-        InverseBlocks(stiffness.DiagonalBlocks(i), spaces_[i].is_free);
+    space.inverse_blocks =
+        InverseBlocks(stiffness_->DiagonalBlocks(i), is_free_[i]);
+    space.multiply = [this, i](const Eigen::MatrixXd& x) {
+      return Multiply(i, x);
+    };
+    const FinerNodes& nodes = stiffness_->NodesAfter(i - 1);
+    space.restrict = [this, i, &nodes](const Eigen::MatrixXd& x) {
+      return Eigen::MatrixXd(is_free_[i - 1].asDiagonal() * nodes.Restrict(x));
+    };
+    space.interpolate = [this, i, &nodes](const Eigen::MatrixXd& x) {
+      return Eigen::MatrixXd(is_free_[i].asDiagonal() * nodes.Interpolate(x));
+    };
   }
   return true;
 }
 
 bool RefinedStiffness::FactorizeFinest() {
   return finest_->FactorizeBlocks(
-      stiffness_->Blocks(spaces_.size() - 1, finest_->Graph()));
+      stiffness_->Blocks(is_free_.size() - 1, finest_->Graph()));
 }
 
 Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
@@ -62,17 +71,15 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
   if (finest_) {
     return finest_->Solve(all);
   }
-  const std::size_t finest = spaces_.size() - 1;
-  const Eigen::VectorXd& is_free = spaces_[finest].is_free;
+  const std::size_t finest = is_free_.size() - 1;
+  const Eigen::VectorXd& is_free = is_free_[finest];
   ConjugateGradientOptions options;
   options.tolerance = tolerance_;
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(
-      [&](const Eigen::MatrixXd& x) {
-        return Eigen::MatrixXd(is_free.asDiagonal() * Multiply(finest, x));
-      },
-      [&](const Eigen::MatrixXd& x) { return Cycle(finest, x); },
+      [&](const Eigen::MatrixXd& x) { return Multiply(finest, x); },
+      [&](const Eigen::MatrixXd& x) { return Cycle(x); },
       is_free.asDiagonal() * all,
       start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
       options);
@@ -92,65 +99,34 @@ Eigen::MatrixXd RefinedStiffness::Precondition(const Eigen::MatrixXd& all) {
   if (finest_) {
     return finest_->Solve(all);
   }
-  const std::size_t finest = spaces_.size() - 1;
-  return Cycle(finest, spaces_[finest].is_free.asDiagonal() * all);
+  return Cycle(is_free_.back().asDiagonal() * all);
 }
 
 Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
                                            const Eigen::MatrixXd& x) {
-  if (space + 1 == spaces_.size()) {
+  if (space + 1 == is_free_.size()) {
     ++work_.element_passes;
   }
-  return stiffness_->Multiply(space, x);
+  return is_free_[space].asDiagonal() * stiffness_->Multiply(space, x);
 }
 
-Eigen::MatrixXd RefinedStiffness::RestOf(std::size_t space,
-                                         const Eigen::MatrixXd& force,
-                                         const Eigen::MatrixXd& x) {
-  Eigen::MatrixXd rest = Multiply(space, x);
-  rest = spaces_[space].is_free.asDiagonal() * (force - rest);
-  return rest;
-}
-
-Eigen::MatrixXd RefinedStiffness::Smooth(std::size_t space,
-                                         const Eigen::MatrixXd& force) {
-  const double largest = stiffness_->LargestEigenvalue(space);
-  const double middle = (kUpper + kLower) / 2 * largest;
-  const double radius = (kUpper - kLower) / 2 * largest;
-  const Eigen::MatrixXd& inverses = spaces_[space].inverse_blocks;
-  // Two steps of the three-term recurrence from zero [Saad, Iterative Methods
-  // for Sparse Linear Systems, algorithm 12.1].  The blocks are zero in the
-  // held rows and columns.
-  const double share = 1 / (2 * middle / radius - radius / middle);
-  Eigen::MatrixXd x = MultiplyBlocks(inverses, force) / middle;
-  RelaxByBlocks(inverses, force, Multiply(space, x),
-                1 + share * radius / middle, 2 * share / radius, x);
-  return x;
-}
-
-Eigen::MatrixXd RefinedStiffness::Cycle(std::size_t space,
-                                        const Eigen::MatrixXd& force) {
-  if (space == 0) {
-    return coarsest_.Solve(force, kCoarseTolerance);
-  }
-  const FinerNodes& nodes = stiffness_->NodesAfter(space - 1);
-  Eigen::MatrixXd x = Smooth(space, force);
-  const Eigen::MatrixXd coarse =
-      Cycle(space - 1, spaces_[space - 1].is_free.asDiagonal() *
-                           nodes.Restrict(RestOf(space, force, x)));
-  x += spaces_[space].is_free.asDiagonal() * nodes.Interpolate(coarse);
-  x += Smooth(space, RestOf(space, force, x));
-  return x;
+Eigen::MatrixXd RefinedStiffness::Cycle(const Eigen::MatrixXd& force) {
+  return VCycle(
+      cycle_,
+      [&](const Eigen::MatrixXd& x) {
+        return coarsest_.Solve(x, kCoarseTolerance);
+      },
+      force);
 }
 
 Eigen::MatrixXd RefinedStiffness::HeldForces(
     const Eigen::MatrixXd& displacements) const {
-  return OfHeld(stiffness_->Multiply(spaces_.size() - 1, displacements));
+  return OfHeld(stiffness_->Multiply(is_free_.size() - 1, displacements));
 }
 
 Eigen::MatrixXd RefinedStiffness::HeldForcesTransposed(
     const Eigen::MatrixXd& held) const {
-  return stiffness_->Multiply(spaces_.size() - 1, OfHeld(held));
+  return stiffness_->Multiply(is_free_.size() - 1, OfHeld(held));
 }
 
 Work RefinedStiffness::WorkDone() const {

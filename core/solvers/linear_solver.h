@@ -18,8 +18,9 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
 
   /// Prepares the matrix of these values (in the order of the pattern) for
-  /// Solve.  Returns false when that fails: the matrix may be singular to
-  /// working precision.  Throws std::bad_alloc when there is not enough memory.
+  /// Solve, to which Solve may refer.  Returns false when that fails: the
+  /// matrix may be singular to working precision.  Throws std::bad_alloc when
+  /// there is not enough memory.
   virtual bool Factorize(const Eigen::VectorXd& values) = 0;
 
   /// Returns the solution x for each column of `right_hand_sides`, size x n.

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "elastimate/core/package/dynamic_module.h"
-#include "elastimate/core/solvers/petsc_multigrid.h"
+#include "elastimate/core/solvers/algebraic_multigrid.h"
+#include "elastimate/core/solvers/petsc_spaces.h"
 
 namespace elastimate {
 namespace {
@@ -13,15 +14,16 @@ namespace {
 std::atomic<void (*)()> start_of_petsc = nullptr;
 
 struct Module {
-  decltype(elastimate_make_multigrid)* make = nullptr;
+  decltype(elastimate_find_multigrid_spaces)* find_spaces = nullptr;
   decltype(elastimate_is_petsc_running)* is_running = nullptr;
   std::string why_not;
 
   Module() {
 #ifdef ELASTIMATE_MULTIGRID_MODULE
-    make = FindInModule<decltype(elastimate_make_multigrid)>(
-        ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why_not);
-    if (make != nullptr) {
+    find_spaces = FindInModule<decltype(elastimate_find_multigrid_spaces)>(
+        ELASTIMATE_MULTIGRID_MODULE, "elastimate_find_multigrid_spaces",
+        why_not);
+    if (find_spaces != nullptr) {
       is_running = FindInModule<decltype(elastimate_is_petsc_running)>(
           ELASTIMATE_MULTIGRID_MODULE, "elastimate_is_petsc_running", why_not);
     }
@@ -57,8 +59,11 @@ std::unique_ptr<LinearSolver> MakeMultigrid(
   if (void (*const start)() = start_of_petsc) {
     start();
   }
-  return std::unique_ptr<LinearSolver>(
-      TheModule().make(mesh, assembly, degrees_of_freedom));
+  return std::make_unique<AlgebraicMultigrid>(
+      assembly, [&](const Eigen::VectorXd& values, MultigridSpaces& spaces) {
+        return TheModule().find_spaces(mesh, assembly, degrees_of_freedom,
+                                       values, spaces);
+      });
 }
 
 }  // namespace elastimate

@@ -29,8 +29,8 @@ void SetStartOfPetsc(void (*start)());
 
 inline bool HasMultigrid() { return WhyNoMultigrid().empty(); }
 
-/// Returns a PetscMultigrid; its Factorize fails where PETSc fails to start.
-/// `assembly` and `degrees_of_freedom` must outlive it.
+/// Returns an AlgebraicMultigrid whose coarse spaces PETSc finds; its Factorize
+/// fails where PETSc fails to start.  The arguments must outlive it.
 /// Precondition: HasMultigrid().
 [[nodiscard]] std::unique_ptr<LinearSolver> MakeMultigrid(
     const Mesh& mesh, const StiffnessAssembly& assembly,

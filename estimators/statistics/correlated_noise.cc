@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
@@ -17,10 +19,12 @@ namespace {
 
 constexpr Eigen::Index kMostPoints = 20000;
 
-// Rows of one component of one load case, by position.
+// Rows of one component of one load case, by the place along the longest axis
+// of the mesh.
 struct RowsOfComponent {
   std::vector<Eigen::Index> rows;
   Eigen::MatrixXd positions;  // dimension x rows.size()
+  Eigen::Index axis = 0;
   /// Points for each that is looked at.
   double points_per_row = 1;
 };
@@ -31,6 +35,25 @@ Eigen::VectorXd PositionOf(const Scene& scene,
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
   return point.index < num_nodes ? scene.mesh.nodes.col(point.index)
                                  : of_points.col(point.index - num_nodes);
+}
+
+void SortByPosition(const Mesh& mesh, RowsOfComponent& rows) {
+  Eigen::Index axis = 0;
+  (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
+      .maxCoeff(&axis);
+  std::vector<Eigen::Index> order(rows.rows.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return rows.positions(axis, a) < rows.positions(axis, b);
+  });
+  rows.axis = axis;
+  rows.positions = rows.positions(Eigen::all, order).eval();
+  std::vector<Eigen::Index> sorted;
+  sorted.reserve(order.size());
+  for (const Eigen::Index i : order) {
+    sorted.push_back(rows.rows[i]);
+  }
+  rows.rows = std::move(sorted);
 }
 
 std::vector<RowsOfComponent> SplitRows(const Scene& scene,
@@ -66,6 +89,7 @@ std::vector<RowsOfComponent> SplitRows(const Scene& scene,
       for (std::size_t j = 0; j < positions[i].size(); ++j) {
         rows.positions.col(Eigen::Index(j)) = positions[i][j];
       }
+      SortByPosition(scene.mesh, rows);
     }
   }
   return all;
@@ -89,13 +113,18 @@ double SpacingOf(const std::vector<RowsOfComponent>& all) {
   return *median;
 }
 
+// Visits the pairs whose distance is less than `reach`.
 template <class Visit>
-void VisitPairs(const RowsOfComponent& rows, const Visit& visit) {
+void VisitPairs(const RowsOfComponent& rows, double reach, const Visit& visit) {
   const Eigen::Index n = rows.positions.cols();
+  const auto along = rows.positions.row(rows.axis);
   for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = i + 1; j < n; ++j) {
-      visit(rows.rows[i], rows.rows[j],
-            (rows.positions.col(i) - rows.positions.col(j)).norm());
+    for (Eigen::Index j = i + 1; j < n && along(j) - along(i) < reach; ++j) {
+      const double distance =
+          (rows.positions.col(i) - rows.positions.col(j)).norm();
+      if (distance < reach) {
+        visit(rows.rows[i], rows.rows[j], distance);
+      }
     }
   }
 }
@@ -127,16 +156,30 @@ PairSums SumPairs(const std::vector<RowsOfComponent>& all,
                    Eigen::VectorXd::Zero(num_steps),
                    Eigen::VectorXd::Zero(num_steps)};
   for (const RowsOfComponent& rows : all) {
-    VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
-      const auto k = static_cast<Eigen::Index>(distance / step);
-      if (k < num_steps) {
-        sums.products(k) += residual(a) * residual(b);
-        sums.square_distances(k) += distance * distance;
-        sums.counts(k) += 1;
-      }
-    });
+    const double reach = static_cast<double>(num_steps) * step;
+    VisitPairs(rows, reach,
+               [&](Eigen::Index a, Eigen::Index b, double distance) {
+                 const auto k = std::min(
+                     static_cast<Eigen::Index>(distance / step), num_steps - 1);
+                 sums.products(k) += residual(a) * residual(b);
+                 sums.square_distances(k) += distance * distance;
+                 sums.counts(k) += 1;
+               });
   }
   return sums;
+}
+
+// Returns rho up to where it is first not significant.
+Eigen::VectorXd SignificantValues(const PairSums& sums, double variance) {
+  const Eigen::VectorXd values =
+      sums.products.cwiseQuotient(variance * sums.counts);
+  Eigen::Index last = 0;
+  while (last < values.size() && sums.counts(last) > 0 &&
+         values(last) >=
+             kLimits.explained_score / std::sqrt(sums.counts(last))) {
+    ++last;
+  }
+  return values.head(last);
 }
 
 // Finds rho = share exp(-d^2 / 2 X^2) from two squares of distances.
@@ -171,21 +214,23 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
   const Eigen::Index num_steps =
       1 + static_cast<Eigen::Index>(DiagonalOf(scene.mesh.nodes) /
                                     correlation.step);
-  const PairSums sums = SumPairs(all, residual, correlation.step, num_steps);
-  const Eigen::VectorXd& counts = sums.counts;
   const double variance =
       SquaredNorm(residual) / static_cast<double>(residual.size());
-  Eigen::Index last = 0;
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(num_steps);
-  while (last < num_steps && counts(last) > 0) {
-    values(last) = sums.products(last) / (counts(last) * variance);
-    if (values(last) < kLimits.explained_score / std::sqrt(counts(last))) {
+  // Most residuals are independent, or alike over a few steps; far pairs are
+  // looked at where it takes them.
+  PairSums sums;
+  Eigen::VectorXd values;
+  for (Eigen::Index reach = 2;; reach *= 4) {
+    const Eigen::Index steps = std::min(reach, num_steps);
+    sums = SumPairs(all, residual, correlation.step, steps);
+    values = SignificantValues(sums, variance);
+    if (values.size() < steps || steps == num_steps) {
       break;
     }
-    ++last;
   }
-  correlation.values = values.head(last).cwiseMin(1.0);
-  if (last > 0 && num_steps > 1 && counts(1) > 0) {
+  const Eigen::VectorXd& counts = sums.counts;
+  correlation.values = values.cwiseMin(1.0);
+  if (values.size() > 0 && num_steps > 1 && counts(1) > 0) {
     const double next =
         std::max(sums.products(1) / (counts(1) * variance), 0.0) +
         kTwoSidedErrors / std::sqrt(counts(1));
@@ -205,16 +250,19 @@ Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
   if (correlation.values.size() == 0) {
     return sum;
   }
+  const double reach =
+      static_cast<double>(correlation.values.size()) * correlation.step;
   // By columns, so that those of a row are side by side.
   const Eigen::MatrixXd by_row = sensitivities.transpose();
   for (const RowsOfComponent& rows : SplitRows(scene, observed)) {
     Eigen::MatrixXd of_component = Eigen::MatrixXd::Zero(m, m);
-    VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
-      const double rho = correlation.At(distance);
-      if (rho != 0) {
-        of_component += rho * by_row.col(a) * by_row.col(b).transpose();
-      }
-    });
+    VisitPairs(
+        rows, reach, [&](Eigen::Index a, Eigen::Index b, double distance) {
+          const double rho = correlation.At(distance);
+          if (rho != 0) {
+            of_component += rho * by_row.col(a) * by_row.col(b).transpose();
+          }
+        });
     sum += rows.points_per_row * rows.points_per_row *
            (of_component + of_component.transpose());
   }

@@ -43,8 +43,9 @@ struct Autocorrelation {
 /// of those that are alike, and the length over which they were smoothed, come
 /// from ln rho of the first two steps, which is linear in d^2 where noise was
 /// smoothed, the second as large as it may be.  `scene` is that of `observed`.
-/// O(n^2) for up to 20 000 points in a load case, of which there are no more:
-/// of others, every second, third and so on is looked at.
+/// Takes the pairs along the longest axis that are as near as residuals are
+/// alike, for up to 20 000 points in a load case; of more points, every second,
+/// third and so on is looked at.
 Autocorrelation CorrelateResiduals(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const Eigen::VectorXd& residual);
@@ -56,8 +57,8 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
 ///   G = sum over rows i != j of rho(|x_i - x_j|) s_i s_j^T
 ///
 /// [White 1980; Conley 1999, with rho of all pairs in place of each product of
-/// residuals].  It may have negative eigenvalues.  O(n^2), as
-/// CorrelateResiduals.
+/// residuals].  It may have negative eigenvalues.  Takes the pairs that
+/// CorrelateResiduals takes.
 Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
                                   const ObservedDisplacements& observed,
                                   const Eigen::MatrixXd& sensitivities,

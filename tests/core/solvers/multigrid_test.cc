@@ -104,7 +104,8 @@ TEST_P(SolvedTwice, RunsTwiceAlike) {
 }
 
 TEST_P(SolvedTwice, SolvesForZeroAndForNothing) {
-  ASSERT_TRUE(multigrid_->Factorize(assembly_.Combine(0.3)));
+  const Eigen::VectorXd values = assembly_.Combine(0.3);
+  ASSERT_TRUE(multigrid_->Factorize(values));
   const Eigen::Index n = dofs_.NumFree();
   EXPECT_EQ(*multigrid_->Solve(Eigen::VectorXd::Zero(n), 1e-6),
             Eigen::MatrixXd(Eigen::VectorXd::Zero(n)));
@@ -120,10 +121,12 @@ TEST_P(SolvedTwice, RefusesValuesThatAreNotFinite) {
 TEST_P(SolvedTwice, SaysWhenItDoesNotConverge) {
   const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 1, 3);
   // Not positive definite.
-  if (multigrid_->Factorize(assembly_.Combine(1.5))) {
+  const Eigen::VectorXd bad = assembly_.Combine(1.5);
+  if (multigrid_->Factorize(bad)) {
     EXPECT_FALSE(multigrid_->Solve(b, 1e-6));
   }
-  ASSERT_TRUE(multigrid_->Factorize(assembly_.Combine(0.3)));
+  const Eigen::VectorXd good = assembly_.Combine(0.3);
+  ASSERT_TRUE(multigrid_->Factorize(good));
   EXPECT_TRUE(multigrid_->Solve(b, 1e-6));
 }
 
@@ -132,7 +135,8 @@ TEST_P(SolvedTwice, SaysWhenItDoesNotConverge) {
 TEST_P(SolvedTwice, EndsForAMatrixThatIsNotPositive) {
   mallopt(M_PERTURB, 0x100);
   for (const double nu : {0.7, 1.5, 4.0}) {
-    if (multigrid_->Factorize(assembly_.Combine(nu))) {
+    const Eigen::VectorXd values = assembly_.Combine(nu);
+    if (multigrid_->Factorize(values)) {
       EXPECT_FALSE(
           multigrid_->Solve(RandomMatrix(dofs_.NumFree(), 1, 3), 1e-6));
     }

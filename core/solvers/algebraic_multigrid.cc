@@ -1,0 +1,136 @@
+#include "elastimate/core/solvers/algebraic_multigrid.h"
+
+#include <utility>
+
+namespace elastimate {
+namespace {
+
+constexpr int kMostIterations = 500;
+
+// Aggregates of few nodes leave coarse spaces modes without energy.
+constexpr double kShift = 1e-6;
+
+Eigen::MatrixXd DiagonalOf(const BlockMatrix& a) {
+  const Eigen::MatrixXd blocks = DiagonalBlocks(a);
+  Eigen::MatrixXd diagonal(1, blocks.cols());
+  for (Eigen::Index i = 0; i < blocks.cols(); ++i) {
+    diagonal(i) = blocks(i % a.block_rows, i);
+  }
+  return diagonal;
+}
+
+Eigen::SparseMatrix<double> Sparse(const BlockMatrix& a) {
+  std::vector<Eigen::Triplet<double>> triplets;
+  triplets.reserve(a.entries.size());
+  std::size_t entry = 0;
+  for (Eigen::Index i = 0; i < a.NumBlockRows(); ++i) {
+    for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
+      for (int c = 0; c < a.block_columns; ++c) {
+        for (int r = 0; r < a.block_rows; ++r) {
+          triplets.emplace_back(a.block_rows * i + r,
+                                a.block_columns * a.column[k] + c,
+                                a.entries[entry++]);
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> result(a.NumRows(), a.num_columns);
+  result.setFromTriplets(triplets.begin(), triplets.end());
+  return result;
+}
+
+}  // namespace
+
+AlgebraicMultigrid::AlgebraicMultigrid(const StiffnessAssembly& assembly,
+                                       FindSpaces find_spaces)
+    : assembly_(assembly), find_spaces_(std::move(find_spaces)) {}
+
+bool AlgebraicMultigrid::Factorize(const Eigen::VectorXd& values) {
+  cycle_.clear();
+  restrictions_.clear();
+  spaces_ = {};  // Its memory is needed.
+  values_ = &values;
+  smallest_eigenvalue_ = 1;
+  return values.allFinite() && find_spaces_(values, spaces_) &&
+         FactorizeCoarsest() && SetUpCycle();
+}
+
+bool AlgebraicMultigrid::FactorizeCoarsest() {
+  Eigen::SparseMatrix<double> matrix = Sparse(spaces_.matrices.front());
+  const Eigen::VectorXd diagonal = matrix.diagonal();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    matrix.coeffRef(i, i) += diagonal(i) > 0 ? kShift * diagonal(i) : 1;
+  }
+  coarsest_.compute(matrix);
+  return coarsest_.info() == Eigen::Success &&
+         (coarsest_.vectorD().array() > 0).all();
+}
+
+bool AlgebraicMultigrid::SetUpCycle() {
+  for (const BlockMatrix& interpolation : spaces_.interpolations) {
+    restrictions_.push_back(Transposed(interpolation));
+  }
+  const std::size_t num_spaces = spaces_.matrices.size();
+  for (std::size_t i = 1; i < num_spaces; ++i) {
+    const BlockMatrix& matrix = spaces_.matrices[i];
+    CycleSpace& space = cycle_.emplace_back();
+    space.multiply = [&matrix](const Eigen::MatrixXd& x) {
+      return Multiply(matrix, x);
+    };
+    space.restrict = [&to = restrictions_[i - 1]](const Eigen::MatrixXd& x) {
+      return Multiply(to, x);
+    };
+    space.interpolate =
+        [&from = spaces_.interpolations[i - 1]](const Eigen::MatrixXd& x) {
+          return Multiply(from, x);
+        };
+    // Blocks of coarse spaces may be singular, as their modes may be.
+    const Eigen::MatrixXd blocks =
+        i + 1 == num_spaces ? DiagonalBlocks(matrix) : DiagonalOf(matrix);
+    const Eigen::VectorXd has_energy =
+        (DiagonalOf(matrix).array() > 0).cast<double>().matrix().transpose();
+    space.inverse_blocks = InverseBlocks(blocks, has_energy);
+    int num_products = 0;
+    space.largest_eigenvalue =
+        LargestEigenvalue(space.multiply, space.inverse_blocks, num_products);
+    if (!(space.largest_eigenvalue > 0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Eigen::MatrixXd AlgebraicMultigrid::Precondition(
+    const Eigen::MatrixXd& forces) const {
+  Eigen::MatrixXd all =
+      Eigen::MatrixXd::Zero(spaces_.matrices.back().NumRows(), forces.cols());
+  all(spaces_.row_of_free, Eigen::all) = forces;
+  return VCycle(
+      cycle_,
+      [&](const Eigen::MatrixXd& x) {
+        return Eigen::MatrixXd(coarsest_.solve(x));
+      },
+      all)(spaces_.row_of_free, Eigen::all);
+}
+
+std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
+    const Eigen::MatrixXd& right_hand_sides, double tolerance) {
+  ConjugateGradientOptions options;
+  options.tolerance = tolerance;
+  options.most_iterations = kMostIterations;
+  options.smallest_eigenvalue = smallest_eigenvalue_;
+  ConjugateGradientResult result = SolveByConjugateGradients(
+      [&](const Eigen::MatrixXd& x) {
+        return MultiplySymmetric(assembly_.Pattern(), *values_, x);
+      },
+      [&](const Eigen::MatrixXd& x) { return Precondition(x); },
+      right_hand_sides, {}, options);
+  num_iterations_ += result.iterations;
+  if (!result.has_converged) {
+    return std::nullopt;
+  }
+  smallest_eigenvalue_ = result.smallest_eigenvalue;
+  return std::move(result.solution);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,218 @@
+#include "elastimate/core/solvers/block_matrix.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+// The first part of this file is compiled once for each kind of processor, and
+// the best one that the program finds is used.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "elastimate/core/solvers/block_matrix.cc"
+#include <hwy/foreach_target.h>
+// This header has to come after foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace elastimate {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The products of one row of blocks with kOfX columns of X, which are `stride`
+// apart.
+template <int kRows, int kColumns, int kOfX>
+HWY_INLINE void MultiplyRow(const BlockMatrix& a, Eigen::Index i,
+                            const double* x, Eigen::Index stride,
+                            double (&sums)[kOfX][kRows]) {
+  std::fill_n(&sums[0][0], kOfX * kRows, 0.0);
+  for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
+    const float* const entries = a.entries.data() + k * kRows * kColumns;
+    const double* const values = x + Eigen::Index{a.column[k]} * kColumns;
+    for (int c = 0; c < kColumns; ++c) {
+      for (int r = 0; r < kRows; ++r) {
+        for (int n = 0; n < kOfX; ++n) {
+          sums[n][r] += double{entries[c * kRows + r]} * values[n * stride + c];
+        }
+      }
+    }
+  }
+}
+
+#if HWY_CAP_GE256 && !HWY_HAVE_SCALABLE
+// Does the same with vectors of four rows, of which the last ones read entries
+// behind the column, or behind the block.
+template <int kRows, int kColumns, int kOfX>
+HWY_INLINE void MultiplyRowByVectors(const BlockMatrix& a, Eigen::Index i,
+                                     const double* x, Eigen::Index stride,
+                                     double (&sums)[kOfX][kRows]) {
+  constexpr int kVectors = (kRows + 3) / 4;
+  const hn::FixedTag<double, 4> d;
+  const hn::FixedTag<float, 4> of_entries;
+  hn::Vec<decltype(d)> sum[kOfX][kVectors];
+  for (int n = 0; n < kOfX; ++n) {
+    for (int v = 0; v < kVectors; ++v) {
+      sum[n][v] = hn::Zero(d);
+    }
+  }
+  for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
+    const float* const entries = a.entries.data() + k * kRows * kColumns;
+    const double* const values = x + Eigen::Index{a.column[k]} * kColumns;
+    for (int c = 0; c < kColumns; ++c) {
+      for (int v = 0; v < kVectors; ++v) {
+        const auto entry = hn::PromoteTo(
+            d, hn::LoadU(of_entries, entries + c * kRows + 4 * v));
+        for (int n = 0; n < kOfX; ++n) {
+          sum[n][v] =
+              hn::MulAdd(entry, hn::Set(d, values[n * stride + c]), sum[n][v]);
+        }
+      }
+    }
+  }
+  for (int n = 0; n < kOfX; ++n) {
+    double all[4 * kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+      hn::StoreU(sum[n][v], d, all + 4 * v);
+    }
+    std::copy_n(all, kRows, sums[n]);
+  }
+}
+#endif
+
+template <int kRows, int kColumns, int kOfX>
+HWY_INLINE void MultiplyColumns(const BlockMatrix& a, Eigen::Index i,
+                                const Eigen::MatrixXd& x, Eigen::Index first,
+                                Eigen::MatrixXd& products) {
+  double sums[kOfX][kRows];
+  const double* const from = x.data() + first * x.rows();
+#if HWY_CAP_GE256 && !HWY_HAVE_SCALABLE
+  // Nothing may be read behind the last of all blocks.
+  if (kRows >= 3 && i + 1 < a.NumBlockRows()) {
+    MultiplyRowByVectors<kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
+  } else {
+    MultiplyRow<kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
+  }
+#else
+  MultiplyRow<kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
+#endif
+  for (int n = 0; n < kOfX; ++n) {
+    std::copy_n(sums[n], kRows,
+                products.data() + (first + n) * products.rows() + kRows * i);
+  }
+}
+
+template <int kRows, int kColumns>
+HWY_INLINE void MultiplyRows(const BlockMatrix& a, Eigen::Index begin,
+                             Eigen::Index end, const Eigen::MatrixXd& x,
+                             Eigen::MatrixXd& products) {
+  // So many columns share each read of a block.
+  constexpr int kAtOnce = 4;
+  for (Eigen::Index i = begin; i < end; ++i) {
+    Eigen::Index column = 0;
+    for (; column + kAtOnce <= x.cols(); column += kAtOnce) {
+      MultiplyColumns<kRows, kColumns, kAtOnce>(a, i, x, column, products);
+    }
+    for (; column < x.cols(); ++column) {
+      MultiplyColumns<kRows, kColumns, 1>(a, i, x, column, products);
+    }
+  }
+}
+
+void MultiplyRowsOfAnySize(const BlockMatrix& a, Eigen::Index begin,
+                           Eigen::Index end, const Eigen::MatrixXd& x,
+                           Eigen::MatrixXd& products) {
+  const std::pair size(a.block_rows, a.block_columns);
+  if (size == std::pair(3, 3)) {
+    MultiplyRows<3, 3>(a, begin, end, x, products);
+  } else if (size == std::pair(3, 6)) {
+    MultiplyRows<3, 6>(a, begin, end, x, products);
+  } else if (size == std::pair(6, 3)) {
+    MultiplyRows<6, 3>(a, begin, end, x, products);
+  } else if (size == std::pair(6, 6)) {
+    MultiplyRows<6, 6>(a, begin, end, x, products);
+  } else if (size == std::pair(2, 2)) {
+    MultiplyRows<2, 2>(a, begin, end, x, products);
+  } else if (size == std::pair(2, 3)) {
+    MultiplyRows<2, 3>(a, begin, end, x, products);
+  } else if (size == std::pair(3, 2)) {
+    MultiplyRows<3, 2>(a, begin, end, x, products);
+  } else {
+    assert(size == std::pair(1, 1));
+    MultiplyRows<1, 1>(a, begin, end, x, products);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace elastimate
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace elastimate {
+
+HWY_EXPORT(MultiplyRowsOfAnySize);
+
+Eigen::MatrixXd Multiply(const BlockMatrix& a, const Eigen::MatrixXd& x) {
+  assert(x.rows() == a.num_columns);
+  // A thread takes about as long to start as so many rows to multiply.
+  constexpr Eigen::Index kRowsAtOnce = 2000;
+  Eigen::MatrixXd products(a.NumRows(), x.cols());
+  const Eigen::Index num_rows = a.NumBlockRows();
+#pragma omp parallel for schedule(static) if (num_rows > kRowsAtOnce)
+  for (Eigen::Index begin = 0; begin < num_rows; begin += kRowsAtOnce) {
+    HWY_DYNAMIC_DISPATCH(MultiplyRowsOfAnySize)
+    (a, begin, std::min(num_rows, begin + kRowsAtOnce), x, products);
+  }
+  return products;
+}
+
+BlockMatrix Transposed(const BlockMatrix& a) {
+  BlockMatrix result;
+  result.block_rows = a.block_columns;
+  result.block_columns = a.block_rows;
+  result.num_columns = a.NumRows();
+  result.start.assign(a.num_columns / a.block_columns + 1, 0);
+  for (const int column : a.column) {
+    ++result.start[column + 1];
+  }
+  for (std::size_t j = 1; j < result.start.size(); ++j) {
+    result.start[j] += result.start[j - 1];
+  }
+  std::vector<Eigen::Index> next(result.start.begin(), result.start.end() - 1);
+  result.column.resize(a.column.size());
+  result.entries.resize(a.entries.size());
+  const Eigen::Index size = Eigen::Index{a.block_rows} * a.block_columns;
+  for (Eigen::Index i = 0; i < a.NumBlockRows(); ++i) {
+    for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
+      const Eigen::Index to = next[a.column[k]]++;
+      result.column[to] = static_cast<int>(i);
+      for (int r = 0; r < a.block_rows; ++r) {
+        for (int c = 0; c < a.block_columns; ++c) {
+          result.entries[to * size + r * a.block_columns + c] =
+              a.entries[k * size + c * a.block_rows + r];
+        }
+      }
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd DiagonalBlocks(const BlockMatrix& a) {
+  const int d = a.block_rows;
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(d, a.NumRows());
+  for (Eigen::Index i = 0; i < a.NumBlockRows(); ++i) {
+    for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
+      if (a.column[k] == i) {
+        blocks.middleCols(d * i, d) =
+            Eigen::MatrixXf::Map(a.entries.data() + k * d * d, d, d)
+                .cast<double>();
+      }
+    }
+  }
+  return blocks;
+}
+
+}  // namespace elastimate
+
+#endif  // HWY_ONCE

@@ -1,0 +1,40 @@
+#ifndef ELASTIMATE_CORE_SOLVERS_BLOCK_MATRIX_H_
+#define ELASTIMATE_CORE_SOLVERS_BLOCK_MATRIX_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace elastimate {
+
+/// A sparse matrix of dense blocks, compressed by rows of blocks.  Its entries
+/// have single precision, which is enough for a preconditioner: products with
+/// it take as long as its entries take to read.
+struct BlockMatrix {
+  int block_rows = 1;  ///< Rows of each block: 1, 2, 3 or 6.
+  int block_columns = 1;
+  Eigen::Index num_columns = 0;     ///< Columns of the matrix.
+  std::vector<Eigen::Index> start;  ///< Rows of blocks + 1, from 0.
+  std::vector<int> column;          ///< The column of blocks of each block.
+  /// The entries of each block by columns, block after block.
+  std::vector<float> entries;
+
+  Eigen::Index NumBlockRows() const { return Eigen::Index(start.size()) - 1; }
+  Eigen::Index NumRows() const { return block_rows * NumBlockRows(); }
+};
+
+/// Returns A X, rows x n, for X of num_columns x n.  The sums have double
+/// precision.  OpenMP's threads share the rows of large matrices; the bits do
+/// not depend on how many there are.  Precondition: blocks of 1 x 1, or of 2, 3
+/// or 6 rows and columns each.
+[[nodiscard]] Eigen::MatrixXd Multiply(const BlockMatrix& a,
+                                       const Eigen::MatrixXd& x);
+
+[[nodiscard]] BlockMatrix Transposed(const BlockMatrix& a);
+
+/// Returns the blocks on the diagonal of a matrix of square blocks, side by
+/// side; zero where there is none.
+[[nodiscard]] Eigen::MatrixXd DiagonalBlocks(const BlockMatrix& a);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SOLVERS_BLOCK_MATRIX_H_
