@@ -50,6 +50,7 @@ WorkBalance::WorkBalance(const VirtualWork& work, const ForceResidual& forces)
   }
   const std::vector<Eigen::MatrixXd>& products = forces.Products();
   std::vector<Eigen::MatrixXd> of_moduli;
+  of_moduli.reserve(products.size());
   for (const Eigen::MatrixXd& product : products) {
     of_moduli.push_back(work.Of(product));
   }

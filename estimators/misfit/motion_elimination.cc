@@ -90,7 +90,7 @@ void MotionElimination::SetRotations(Rotations rotations) {
 
 Eigen::VectorXd MotionElimination::MeasuredMotionOfSupports(
     Eigen::Index k) const {
-  const Eigen::VectorXd measured = MeasuredSupports(scene_, k);
+  Eigen::VectorXd measured = MeasuredSupports(scene_, k);
   if (cameras_.empty()) {
     return measured;
   }
