@@ -9,7 +9,7 @@
 
 #include "apps/flags.h"
 #include "elastimate/core/mesh/mesh_points.h"
-#include "elastimate/core/scene/deformation_size.h"
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -56,18 +56,19 @@ void CheckFirst(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// Returns what is left of a measurement, without its rotation where that is
-// free; NaN where there is none, or where it was left out.
-Eigen::VectorXd ResidualOf(const Scene& scene, LoadCase frame,
+// Returns what is left of a measurement; NaN where there is none, or where it
+// was left out.
+Eigen::VectorXd ResidualOf(const Scene& scene, const LoadCase& frame,
                            const Estimate& estimate) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (estimate.fitted_displacement.size() == 0) {
     return {};
   }
-  RemoveFreeRotation(scene, frame);
   const Mesh& mesh = scene.mesh;
-  const Eigen::MatrixXd fitted = estimate.fitted_displacement.col(0).reshaped(
-      mesh.Dimension(), mesh.NumNodes());
+  const Eigen::MatrixXd fitted =
+      SeenDisplacements(mesh, estimate.fitted_displacement, estimate.cameras)
+          .col(0)
+          .reshaped(mesh.Dimension(), mesh.NumNodes());
   Eigen::MatrixXd residual;
   if (frame.displacement.size() != 0) {
     residual = frame.displacement - fitted;

@@ -218,12 +218,16 @@ void ClimbComputedLargeStrains(const Scene& scene,
       !ClimbLargeStrainLaws(scene, options, ladder)) {
     return;
   }
-  if (ladder.Last().IsUsable() &&
-      ladder.Last().displacement_residual < small.displacement_residual) {
-    ladder.Decide("stopped: laws of large strains explain more");
-  } else {
+  const Estimate& large = ladder.Last();
+  if (!(large.displacement_residual < small.displacement_residual)) {
     ladder.Decide("not taken: laws of large strains do not explain more");
     ladder.Last() = small;
+  } else if (!large.IsUsable() && small.IsUsable()) {
+    ladder.Decide("not taken: " + WhyNotUsable(large));
+    ladder.Last() = small;
+  } else {
+    // Where neither is usable, it matters why the better one is not.
+    ladder.Decide("stopped: laws of large strains explain more");
   }
 }
 

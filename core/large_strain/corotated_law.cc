@@ -71,9 +71,10 @@ void SetCorotatedStresses(const PointMatrices& gradients, int count,
 //   w = K^-1 (T_1 : dF, T_2 : dF, T_3 : dF),   T_a = R [e_a],
 //
 // where [e] is the matrix of the cross product with e.
-void SetCorotatedTangents(double mu, double lambda,
-                          const PointMatrices& gradients, int count,
-                          PointTangents& tangents) {
+template <class Places>
+HWY_INLINE void SetTangentsOfRotation(double mu, double lambda,
+                                      const PointMatrices& gradients, int count,
+                                      PointTangents& tangents) {
   for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
     const Polar polar = PolarOf(LoadMatrix(gradients, p));
     const Matrix3& r = polar.rotation;
@@ -93,24 +94,29 @@ void SetCorotatedTangents(double mu, double lambda,
         turned[axis](i, last) = Number(0) - r(i, next);
       }
     }
-    Number a[45];
-    for (Number& entry : a) {
-      entry = Number(0);
-    }
-    AddOuter(Number(lambda) * r, r, a);
+    Tangent<Places> a;
+    a.AddOuter(Number(lambda) * r, r);
     for (int axis = 0; axis < 3; ++axis) {
       Matrix3 turn = (weight * cofactors(axis, 0)) * turned[0];
       AddScaled(weight * cofactors(axis, 1), turned[1], turn);
       AddScaled(weight * cofactors(axis, 2), turned[2], turn);
-      AddOuter(turned[axis], turn, a);
+      a.AddOuter(turned[axis], turn);
     }
-    for (int i = 0; i < 9; ++i) {
-      Number& diagonal = a[TangentRow(i, i)];
-      diagonal = diagonal + Number(2 * mu);
-    }
-    for (int i = 0; i < 45; ++i) {
-      StoreNumber(a[i], tangents.row[i] + p);
-    }
+    a.AddToDiagonal(Number(2 * mu));
+    a.Store(p, tangents);
+  }
+}
+
+void SetCorotatedTangents(double mu, double lambda,
+                          const PointMatrices& gradients,
+                          GradientEntries entries, int count,
+                          PointTangents& tangents) {
+  if (entries == GradientEntries::kOfPlane) {
+    SetTangentsOfRotation<PlacesOfPlane>(mu, lambda, gradients, count,
+                                         tangents);
+  } else {
+    SetTangentsOfRotation<PlacesOfSolid>(mu, lambda, gradients, count,
+                                         tangents);
   }
 }
 
@@ -141,16 +147,18 @@ Eigen::VectorXd CorotatedLaw::Energies(const Eigen::MatrixXd& gradient,
                          stresses.col(1).squaredNorm() / 6);
 }
 
-void CorotatedLaw::StressesAtPoints(const PointMatrices& gradients, int count,
+void CorotatedLaw::StressesAtPoints(const PointMatrices& gradients,
+                                    GradientEntries /*entries*/, int count,
                                     PointMatrices* columns) const {
   HWY_DYNAMIC_DISPATCH(SetCorotatedStresses)(gradients, count, columns);
 }
 
 void CorotatedLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
-                                    const PointMatrices& gradients, int count,
+                                    const PointMatrices& gradients,
+                                    GradientEntries entries, int count,
                                     PointTangents& tangents) const {
   HWY_DYNAMIC_DISPATCH(SetCorotatedTangents)
-  (moduli(0), moduli(1), gradients, count, tangents);
+  (moduli(0), moduli(1), gradients, entries, count, tangents);
 }
 
 }  // namespace elastimate

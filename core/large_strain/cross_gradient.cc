@@ -45,8 +45,10 @@ void SetCrossGradients(const LargeStrainLaw& law, const Eigen::VectorXd& moduli,
   std::vector<PointMatrices> columns(law.NumModuli());
   PointTangents tangents;
   for (int step = 0; step < kMostSteps; ++step) {
-    law.StressesAtPoints(gradients, count, columns.data());
-    law.TangentsAtPoints(moduli, gradients, count, tangents);
+    law.StressesAtPoints(gradients, GradientEntries::kOfPlane, count,
+                         columns.data());
+    law.TangentsAtPoints(moduli, gradients, GradientEntries::kOfPlane, count,
+                         tangents);
     bool is_found = true;
     for (int p = 0; p < count; ++p) {
       double stress = 0;

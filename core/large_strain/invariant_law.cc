@@ -53,9 +53,10 @@ void SetInvariants(const PointMatrices& gradients, int count,
   }
 }
 
-void SetStresses(const PointMatrices& gradients, int count,
-                 const PointDerivatives* of_moduli, int num_moduli,
-                 PointMatrices* columns) {
+template <class Places>
+HWY_INLINE void SetStressesAt(const PointMatrices& gradients, int count,
+                              const PointDerivatives* of_moduli, int num_moduli,
+                              PointMatrices* columns) {
   for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
     const Matrix3 h = LoadMatrix(gradients, p);
     const Matrix3 e = GreenStrain(h);
@@ -79,51 +80,67 @@ void SetStresses(const PointMatrices& gradients, int count,
       const Number w1 = Number(2) * LoadNumber(w.w1 + p);
       const Number w2 = Number(4) * LoadNumber(w.w2 + p);
       const Number rest = LoadNumber(w.rest + p);
-      Matrix3 stress = w1 * h;
-      AddScaled(w2, d, stress);
-      AddScaled(rest - w1 - w2, g, stress);
-      AddToDiagonal(rest, stress);
-      StoreMatrix(stress, p, columns[k]);
+      for (const int place : Places::kPlaces) {
+        Number stress = w1 * h.entry[place];
+        stress = MulAdd(w2, d.entry[place], stress);
+        stress = MulAdd(rest - w1 - w2, g.entry[place], stress);
+        if (place % 4 == 0) {
+          stress = stress + rest;
+        }
+        StoreNumber(stress, columns[k].row[place] + p);
+      }
     }
   }
 }
 
+void SetStresses(const PointMatrices& gradients, GradientEntries entries,
+                 int count, const PointDerivatives* of_moduli, int num_moduli,
+                 PointMatrices* columns) {
+  if (entries == GradientEntries::kOfPlane) {
+    SetStressesAt<PlacesOfPlane>(gradients, count, of_moduli, num_moduli,
+                                 columns);
+  } else {
+    SetStressesAt<PlacesOfSolid>(gradients, count, of_moduli, num_moduli,
+                                 columns);
+  }
+}
+
 // Adds w times the derivative of cof F: a permutation of the entries of F.
-HWY_INLINE void AddCofactorSlope(Number w, const Matrix3& f, Number* a) {
+template <class Places>
+HWY_INLINE void AddCofactorSlope(Number w, const Matrix3& f,
+                                 Tangent<Places>& a) {
   const Matrix3 wf = w * f;
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      const int row = i + 3 * j;
-      // d cof(i, j) / d F(k, l) is F(m, n) for k != i and l != j, with the sign
-      // of both permutations.
-      for (int l = 0; l < 3; ++l) {
-        for (int k = 0; k < 3; ++k) {
-          const int column = k + 3 * l;
-          if (k == i || l == j || column > row) {
-            continue;
-          }
-          const Number& entry = wf(3 - i - k, 3 - j - l);
-          const bool is_even = ((k - i + 3) % 3 == 1) == ((l - j + 3) % 3 == 1);
-          Number& sum = a[TangentRow(row, column)];
-          sum = is_even ? sum + entry : sum - entry;
-        }
+  for (int n = 0; n < Tangent<Places>::kSize; ++n) {
+    const int i = Places::kPlaces[n] % 3;
+    const int j = Places::kPlaces[n] / 3;
+    // d cof(i, j) / d F(k, l) is F(m, n) for k != i and l != j, with the sign
+    // of both permutations.
+    for (int m = 0; m <= n; ++m) {
+      const int k = Places::kPlaces[m] % 3;
+      const int l = Places::kPlaces[m] / 3;
+      if (k == i || l == j) {
+        continue;
       }
+      const Number& entry = wf(3 - i - k, 3 - j - l);
+      const bool is_even = ((k - i + 3) % 3 == 1) == ((l - j + 3) % 3 == 1);
+      a(n, m) = is_even ? a(n, m) + entry : a(n, m) - entry;
     }
   }
 }
 
 // Adds w times the derivative of 2 (I1 F - F C), but for its part
 // 4 w F (x) F, which belongs to the products of first derivatives.
+template <class Places>
 HWY_INLINE void AddSecondSlope(Number w, const Matrix3& f, Number i1,
-                               Number* a) {
+                               Tangent<Places>& a) {
   Matrix3 c = TransposedProduct(f, f);
   const Number twice = Number(2) * w;
-  for (int row = 0; row < 9; ++row) {
-    const int i = row % 3;
-    const int j = row / 3;
-    for (int column = 0; column <= row; ++column, ++a) {
-      const int k = column % 3;
-      const int l = column / 3;
+  for (int n = 0; n < Tangent<Places>::kSize; ++n) {
+    const int i = Places::kPlaces[n] % 3;
+    const int j = Places::kPlaces[n] / 3;
+    for (int m = 0; m <= n; ++m) {
+      const int k = Places::kPlaces[m] % 3;
+      const int l = Places::kPlaces[m] / 3;
       Number sum = f(i, l) * f(k, j);
       if (i == k) {
         sum = sum + c(l, j);
@@ -131,17 +148,18 @@ HWY_INLINE void AddSecondSlope(Number w, const Matrix3& f, Number i1,
       if (j == l) {
         sum = sum + Dot3(f(i, 0), f(k, 0), f(i, 1), f(k, 1), f(i, 2), f(k, 2));
       }
-      if (row == column) {
+      if (n == m) {
         sum = sum - i1;
       }
-      *a = NegMulAdd(twice, sum, *a);
+      a(n, m) = NegMulAdd(twice, sum, a(n, m));
     }
   }
 }
 
-void SetTangents(const PointMatrices& gradients, int count,
-                 const PointDerivatives& w, bool has_second,
-                 PointTangents& tangents) {
+template <class Places>
+HWY_INLINE void SetTangentsAt(const PointMatrices& gradients, int count,
+                              const PointDerivatives& w, bool has_second,
+                              PointTangents& tangents) {
   for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
     const auto load = [p](const PointDerivatives::Row& row)
                           HWY_ATTR { return LoadNumber(row + p); };
@@ -151,14 +169,11 @@ void SetTangents(const PointMatrices& gradients, int count,
     const Number w1 = load(w.w1);
     const Number w2 = load(w.w2);
     const Number wj = load(w.rest) - Number(2) * w1 - Number(4) * w2;
-    Number a[45];
-    for (Number& entry : a) {
-      entry = Number(0);
-    }
+    Tangent<Places> a;
     // The products of first derivatives of I1 and J, 2 F and cof F.
     Matrix3 of_f = Number(4) * (load(w.w11) + w2) * f;
     AddScaled(Number(2) * load(w.w1j), cofactors, of_f);
-    AddOuter(of_f, f, a);
+    a.AddOuter(of_f, f);
     Matrix3 of_cofactors = Number(2) * load(w.w1j) * f;
     AddScaled(load(w.wjj), cofactors, of_cofactors);
     if (has_second) {
@@ -170,19 +185,24 @@ void SetTangents(const PointMatrices& gradients, int count,
       }
       Matrix3 of_x2 = load(w.w22) * x2;
       AddScaled(load(w.w2j), cofactors, of_x2);
-      AddOuter(of_x2, x2, a);
+      a.AddOuter(of_x2, x2);
       AddScaled(load(w.w2j), x2, of_cofactors);
       AddSecondSlope(w2, f, i1, a);
     }
-    AddOuter(of_cofactors, cofactors, a);
+    a.AddOuter(of_cofactors, cofactors);
     AddCofactorSlope(wj, f, a);
-    for (int i = 0; i < 9; ++i) {
-      Number& diagonal = a[TangentRow(i, i)];
-      diagonal = diagonal + Number(2) * w1;
-    }
-    for (int i = 0; i < 45; ++i) {
-      StoreNumber(a[i], tangents.row[i] + p);
-    }
+    a.AddToDiagonal(Number(2) * w1);
+    a.Store(p, tangents);
+  }
+}
+
+void SetTangents(const PointMatrices& gradients, GradientEntries entries,
+                 int count, const PointDerivatives& w, bool has_second,
+                 PointTangents& tangents) {
+  if (entries == GradientEntries::kOfPlane) {
+    SetTangentsAt<PlacesOfPlane>(gradients, count, w, has_second, tangents);
+  } else {
+    SetTangentsAt<PlacesOfSolid>(gradients, count, w, has_second, tangents);
   }
 }
 
@@ -226,16 +246,18 @@ Eigen::VectorXd InvariantLaw::Energies(const Eigen::MatrixXd& gradient,
   return energies;
 }
 
-void InvariantLaw::StressesAtPoints(const PointMatrices& gradients, int count,
+void InvariantLaw::StressesAtPoints(const PointMatrices& gradients,
+                                    GradientEntries entries, int count,
                                     PointMatrices* columns) const {
   const std::vector<PointDerivatives> of_moduli =
       DerivativesOf(*this, gradients, count);
   HWY_DYNAMIC_DISPATCH(SetStresses)
-  (gradients, count, of_moduli.data(), NumModuli(), columns);
+  (gradients, entries, count, of_moduli.data(), NumModuli(), columns);
 }
 
 void InvariantLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
-                                    const PointMatrices& gradients, int count,
+                                    const PointMatrices& gradients,
+                                    GradientEntries entries, int count,
                                     PointTangents& tangents) const {
   const std::vector<PointDerivatives> of_moduli =
       DerivativesOf(*this, gradients, count);
@@ -252,7 +274,7 @@ void InvariantLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
       Eigen::Map<const Eigen::ArrayXd>(sum.w2, count).any() ||
       Eigen::Map<const Eigen::ArrayXd>(sum.w22, count).any();
   HWY_DYNAMIC_DISPATCH(SetTangents)
-  (gradients, count, sum, has_second, tangents);
+  (gradients, entries, count, sum, has_second, tangents);
 }
 
 }  // namespace elastimate

@@ -57,11 +57,11 @@ class InvariantLaw : public LargeStrainLaw {
 
   Eigen::VectorXd Energies(const Eigen::MatrixXd& gradient,
                            SectionModel model) const override;
-  void StressesAtPoints(const PointMatrices& gradients, int count,
-                        PointMatrices* columns) const override;
+  void StressesAtPoints(const PointMatrices& gradients, GradientEntries entries,
+                        int count, PointMatrices* columns) const override;
   void TangentsAtPoints(const Eigen::VectorXd& moduli,
-                        const PointMatrices& gradients, int count,
-                        PointTangents& tangents) const override;
+                        const PointMatrices& gradients, GradientEntries entries,
+                        int count, PointTangents& tangents) const override;
 };
 
 }  // namespace elastimate

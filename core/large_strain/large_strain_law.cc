@@ -29,7 +29,8 @@ PointMatrices AtOnePoint(const Eigen::MatrixXd& gradient) {
 Eigen::MatrixXd LargeStrainLaw::Stresses(const Eigen::MatrixXd& gradient,
                                          SectionModel /*model*/) const {
   std::vector<PointMatrices> columns(NumModuli());
-  StressesAtPoints(AtOnePoint(gradient), 1, columns.data());
+  StressesAtPoints(AtOnePoint(gradient), GradientEntries::kAll, 1,
+                   columns.data());
   Eigen::MatrixXd stresses(9, NumModuli());
   for (int k = 0; k < NumModuli(); ++k) {
     stresses.col(k) = MatrixAt(columns[k], 0).reshaped();
@@ -41,7 +42,8 @@ Eigen::MatrixXd LargeStrainLaw::Tangent(const Eigen::VectorXd& moduli,
                                         const Eigen::MatrixXd& gradient,
                                         SectionModel /*model*/) const {
   PointTangents tangents;
-  TangentsAtPoints(moduli, AtOnePoint(gradient), 1, tangents);
+  TangentsAtPoints(moduli, AtOnePoint(gradient), GradientEntries::kAll, 1,
+                   tangents);
   Eigen::MatrixXd tangent(9, 9);
   for (int a = 0; a < 9; ++a) {
     for (int b = 0; b < 9; ++b) {

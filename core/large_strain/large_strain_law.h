@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_LARGE_STRAIN_LARGE_STRAIN_LAW_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "elastimate/core/laws/law.h"
@@ -26,6 +27,15 @@ using PointTangents = PointValues<45>;
 constexpr int TangentRow(int a, int b) {
   return a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;
 }
+
+/// Which entries of gradients at some points may not be zero.
+enum class GradientEntries {
+  kAll,
+  kOfPlane,  ///< Those of a mesh in the plane: kPlacesOfPlane.
+};
+
+/// The places of H_11, H_21, H_12, H_22 and H_33 in a matrix of nine.
+inline constexpr std::array<int, 5> kPlacesOfPlane = {0, 1, 3, 4, 8};
 
 /// A law for deformations of any size.  It is objective: for a rotation Q and
 /// F = I + H,
@@ -54,12 +64,16 @@ class LargeStrainLaw : public Law {
                           SectionModel model) const override;
 
   /// Sets columns[k] to P_k at the first `count` points, at most
-  /// PointMatrices::kPoints.  The gradients of other points are finite.
-  virtual void StressesAtPoints(const PointMatrices& gradients, int count,
+  /// PointMatrices::kPoints; for gradients of the plane at least the entries of
+  /// kPlacesOfPlane.  The gradients of other points are finite.
+  virtual void StressesAtPoints(const PointMatrices& gradients,
+                                GradientEntries entries, int count,
                                 PointMatrices* columns) const = 0;
-  /// Sets `tangents` to dP / dH for these moduli at these points.
+  /// Sets `tangents` to dP / dH for these moduli at these points, with such
+  /// entries.
   virtual void TangentsAtPoints(const Eigen::VectorXd& moduli,
-                                const PointMatrices& gradients, int count,
+                                const PointMatrices& gradients,
+                                GradientEntries entries, int count,
                                 PointTangents& tangents) const = 0;
 };
 

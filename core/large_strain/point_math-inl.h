@@ -13,6 +13,10 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include <array>
+
+#include "elastimate/core/large_strain/large_strain_law.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace elastimate {
 namespace HWY_NAMESPACE {
@@ -192,14 +196,58 @@ HWY_INLINE Matrix3 GreenStrain(const Matrix3& h) {
   return e;
 }
 
-// Adds the lower triangle of the outer product of x and y, a 9 x 9 matrix.
-HWY_INLINE void AddOuter(const Matrix3& x, const Matrix3& y, Number* a) {
-  for (int i = 0; i < 9; ++i) {
-    for (int k = 0; k <= i; ++k, ++a) {
-      *a = MulAdd(x.entry[i], y.entry[k], *a);
+// The places of a matrix whose rows of a tangent are computed.
+struct PlacesOfSolid {
+  static constexpr std::array<int, 9> kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+};
+struct PlacesOfPlane {
+  static constexpr std::array<int, 5> kPlaces = kPlacesOfPlane;
+};
+
+// A tangent at some points, of which the rows and columns at some places are
+// computed.
+template <class Places>
+struct Tangent {
+  static constexpr int kSize = int(Places::kPlaces.size());
+  static constexpr int kNumEntries = kSize * (kSize + 1) / 2;
+
+  HWY_INLINE Tangent() {
+    for (Number& each : entry) {
+      each = Number(0);
     }
   }
-}
+  // The n-th place against the m-th one, n >= m.
+  HWY_INLINE Number& operator()(int n, int m) {
+    return entry[TangentRow(n, m)];
+  }
+
+  // Adds the outer product of x and y.
+  HWY_INLINE void AddOuter(const Matrix3& x, const Matrix3& y) {
+    for (int n = 0; n < kSize; ++n) {
+      for (int m = 0; m <= n; ++m) {
+        (*this)(n, m) = MulAdd(x.entry[Places::kPlaces[n]],
+                               y.entry[Places::kPlaces[m]], (*this)(n, m));
+      }
+    }
+  }
+  HWY_INLINE void AddToDiagonal(const Number& number) {
+    for (int n = 0; n < kSize; ++n) {
+      (*this)(n, n) = (*this)(n, n) + number;
+    }
+  }
+  HWY_INLINE void Store(int point, PointTangents& tangents) const {
+    for (int n = 0; n < kSize; ++n) {
+      for (int m = 0; m <= n; ++m) {
+        StoreNumber(
+            entry[TangentRow(n, m)],
+            tangents.row[TangentRow(Places::kPlaces[n], Places::kPlaces[m])] +
+                point);
+      }
+    }
+  }
+
+  Number entry[kNumEntries];
+};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

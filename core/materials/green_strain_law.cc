@@ -42,7 +42,8 @@ Eigen::VectorXd GreenStrainLaw::Energies(const Eigen::MatrixXd& gradient,
   return law_->Energies(StrainOf(gradient), kSolid);
 }
 
-void GreenStrainLaw::StressesAtPoints(const PointMatrices& gradients, int count,
+void GreenStrainLaw::StressesAtPoints(const PointMatrices& gradients,
+                                      GradientEntries /*entries*/, int count,
                                       PointMatrices* columns) const {
   for (int p = 0; p < count; ++p) {
     const Eigen::Matrix3d h = GradientAt(gradients, p);
@@ -59,7 +60,8 @@ void GreenStrainLaw::StressesAtPoints(const PointMatrices& gradients, int count,
 }
 
 void GreenStrainLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
-                                      const PointMatrices& gradients, int count,
+                                      const PointMatrices& gradients,
+                                      GradientEntries /*entries*/, int count,
                                       PointTangents& tangents) const {
   Matrix9 stiffness = Matrix9::Zero();
   for (int k = 0; k < NumModuli(); ++k) {

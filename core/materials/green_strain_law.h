@@ -56,11 +56,11 @@ class GreenStrainLaw : public LargeStrainLaw {
 
   Eigen::VectorXd Energies(const Eigen::MatrixXd& gradient,
                            SectionModel model) const override;
-  void StressesAtPoints(const PointMatrices& gradients, int count,
-                        PointMatrices* columns) const override;
+  void StressesAtPoints(const PointMatrices& gradients, GradientEntries entries,
+                        int count, PointMatrices* columns) const override;
   void TangentsAtPoints(const Eigen::VectorXd& moduli,
-                        const PointMatrices& gradients, int count,
-                        PointTangents& tangents) const override;
+                        const PointMatrices& gradients, GradientEntries entries,
+                        int count, PointTangents& tangents) const override;
 
  private:
   using Matrix9 = Eigen::Matrix<double, 9, 9>;

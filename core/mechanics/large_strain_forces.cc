@@ -68,6 +68,8 @@ template <ElementKind kKind>
 class ElementBatch {
  public:
   static constexpr int kDimension = kDimensionOf<kKind>;
+  static constexpr GradientEntries kEntries =
+      kDimension == 2 ? GradientEntries::kOfPlane : GradientEntries::kAll;
 
   // Gathers elements of the pass from the place `first` on.
   ElementBatch(const MaterialPass& pass, std::size_t first,
@@ -119,7 +121,8 @@ class ElementBatch {
   // Returns P_k of each modulus.
   std::vector<PointMatrices> Stresses() const {
     std::vector<PointMatrices> columns(pass_.law.NumModuli());
-    pass_.law.StressesAtPoints(gradients_, NumPoints(), columns.data());
+    pass_.law.StressesAtPoints(gradients_, kEntries, NumPoints(),
+                               columns.data());
     return columns;
   }
   // Returns the derivatives of the stress by each modulus.  In plane stress,
@@ -136,7 +139,7 @@ class ElementBatch {
     for (PointMatrices& stress : columns) {
       for (int p = 0; p < NumPoints(); ++p) {
         const double change = -stress.row[kCrossEntry][p] / cross_slope[p];
-        for (int entry = 0; entry < 9; ++entry) {
+        for (const int entry : kPlacesOfPlane) {
           stress.row[entry][p] +=
               tangents.row[TangentRow(entry, kCrossEntry)][p] * change;
         }
@@ -145,7 +148,8 @@ class ElementBatch {
     return columns;
   }
   void SetTangents(PointTangents& tangents) const {
-    pass_.law.TangentsAtPoints(pass_.moduli, gradients_, NumPoints(), tangents);
+    pass_.law.TangentsAtPoints(pass_.moduli, gradients_, kEntries, NumPoints(),
+                               tangents);
   }
 
   int PlaceOf(std::size_t element, int i) const {
@@ -300,7 +304,8 @@ void AddTetrahedraColumns(const MaterialPass& pass,
   VisitTetrahedra<Points>(
       pass, displacement,
       [&](const Points& points, const PointMatrices& gradients, int count) {
-        pass.law.StressesAtPoints(gradients, count, stresses.data());
+        pass.law.StressesAtPoints(gradients, GradientEntries::kAll, count,
+                                  stresses.data());
         for (std::size_t k = 0; k < stresses.size(); ++k) {
           points.AddForces(stresses[k], columns.col(Eigen::Index(k)).data());
         }
@@ -314,7 +319,8 @@ void AddTet4Blocks(const MaterialPass& pass,
   VisitTetrahedra<Tet4Points>(
       pass, displacement,
       [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
-        pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
+        pass.law.TangentsAtPoints(pass.moduli, gradients, GradientEntries::kAll,
+                                  count, tangents);
         points.AddBlocks(tangents, graph, blocks);
       });
 }
@@ -329,7 +335,8 @@ void AddTet4Products(const MaterialPass& pass,
   VisitTetrahedra<Tet4Points>(
       pass, displacement,
       [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
-        pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
+        pass.law.TangentsAtPoints(pass.moduli, gradients, GradientEntries::kAll,
+                                  count, tangents);
         for (Eigen::Index column = 0; column < directions.cols(); ++column) {
           points.SetGradients(directions.col(column).data(), change);
           stresses = {};
@@ -456,12 +463,19 @@ void SetCurvature(const ElementBatch<kKind>& batch,
                   MeanDilatation::Curvature& curvature) {
   const std::vector<PointMatrices> columns = batch.Stresses();
   PointMatrices stresses = {};
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    for (int entry = 0; entry < 9; ++entry) {
+  const auto add = [&](int entry) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
       for (int p = 0; p < PointMatrices::kPoints; ++p) {
         stresses.row[entry][p] +=
             moduli(Eigen::Index(k)) * columns[k].row[entry][p];
       }
+    }
+  };
+  if constexpr (kDimensionOf<kKind> == 2) {
+    std::for_each(kPlacesOfPlane.begin(), kPlacesOfPlane.end(), add);
+  } else {
+    for (int entry = 0; entry < 9; ++entry) {
+      add(entry);
     }
   }
   batch.Mean().SetCurvature(stresses, tangents, curvature);

@@ -1,6 +1,7 @@
 #include "elastimate/core/mechanics/mean_dilatation.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace elastimate {
@@ -63,6 +64,19 @@ MeanDilatation::MeanDilatation(const ElementPoints& points,
 void MeanDilatation::MakeOrthonormal() {
   const int size = points_.num_polynomials;
   auto& rows = points_.polynomials.row;
+  if (size == 1) {
+    // The constant alone needs no factor, which would take longer than all else
+    // here.
+    for (int first = 0; first < points_.num_points;
+         first += points_.per_element) {
+      double volume = 0;
+      for (int p = first; p < first + points_.per_element; ++p) {
+        volume += points_.volumes.row[0][p];
+      }
+      std::fill_n(rows[0] + first, points_.per_element, 1 / std::sqrt(volume));
+    }
+    return;
+  }
   for (int first = 0; first < points_.num_points;
        first += points_.per_element) {
     Products products = Products::Zero(size, size);

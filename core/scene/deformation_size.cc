@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <random>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mesh/nearest_points.h"
 
 namespace elastimate {
 namespace {
@@ -23,13 +23,20 @@ constexpr Eigen::Index kValuesPerMonomial = 4;
 // noise.
 constexpr double kDependent = 1e-4;
 constexpr double kVolumeShare = 0.95;
-// A rotation [rad] above kLargeRotation is taken out whatever the strains are.
-// A rotation below the other limit is left to the linear motions that fits
-// eliminate, for rounding.  Between them, a rotation that is less than the
-// strains stays: it may be the turn of the specimen itself, and changes the
-// strains by less than half of its square.
-constexpr double kLargeRotation = 1e-2;
-constexpr double kSmallRotation = 1e-4;
+// So many neighbours for each dimension are compared with a value.
+constexpr int kNeighbours = 4;
+// Noise stays below this many times the differences among neighbours, and a
+// kink of the displacement, too.
+constexpr double kStray = 8;
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double Median(const Eigen::VectorXd& values) {
+  return Median(std::vector<double>(values.begin(), values.end()));
+}
 
 // The observations of each component: positions, dimension x n, and values.
 struct Observed {
@@ -162,6 +169,57 @@ Eigen::MatrixXd GradientAt(const Frame& frame, const Observed& observed,
   return gradient;
 }
 
+// Returns the values minus those of the affine function of least squares.
+Eigen::VectorXd WithoutAffinePart(const Frame& frame,
+                                  const Observed& observed) {
+  Eigen::MatrixXd affine(observed.values.size(), observed.positions.rows() + 1);
+  affine << Eigen::VectorXd::Ones(observed.values.size()),
+      frame.Coordinates(observed.positions).transpose();
+  return observed.values -
+         affine * SolveLeastSquares(affine, observed.values, kDependent);
+}
+
+std::vector<std::vector<Eigen::Index>> NeighboursOf(
+    const Eigen::MatrixXd& positions) {
+  std::vector<std::vector<Eigen::Index>> neighbours(positions.cols());
+  for (const auto& [a, b] :
+       NearestPairs(positions, kNeighbours * int(positions.rows()))) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  }
+  return neighbours;
+}
+
+// Leaves out values that disagree with the values of their neighbours by far
+// more than these do among themselves, as in the normalised median test of
+// Westerweel & Scarano (Exp. Fluids 39 (2005) 1096): gross errors, each of
+// which would bend the polynomials.  A deformation, however local, is one of
+// several neighbours.
+Observed WithoutStrayValues(const Frame& frame, const Observed& observed) {
+  const Eigen::Index num_values = observed.values.size();
+  if (num_values <= kNeighbours * observed.positions.rows()) {
+    return observed;
+  }
+  const Eigen::VectorXd rest = WithoutAffinePart(frame, observed);
+  const auto neighbours = NeighboursOf(observed.positions);
+  Eigen::VectorXd difference(num_values);
+  Eigen::VectorXd spread(num_values);
+  for (Eigen::Index i = 0; i < num_values; ++i) {
+    const Eigen::VectorXd around = rest(neighbours[i]);
+    const double middle = Median(around);
+    difference(i) = std::abs(rest(i) - middle);
+    spread(i) = Median((around.array() - middle).abs());
+  }
+  const double usual = Median(difference);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < num_values; ++i) {
+    if (difference(i) <= kStray * (spread(i) + usual)) {
+      kept.push_back(i);
+    }
+  }
+  return {observed.positions(Eigen::all, kept), observed.values(kept)};
+}
+
 struct Polar {
   Eigen::MatrixXd rotation;
   Eigen::VectorXd stretches;
@@ -206,8 +264,8 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
   std::vector<Eigen::MatrixXd> gradients;
   Eigen::MatrixXd at;
   for (int component = 0; component < dimension; ++component) {
-    const Observed observed =
-        ObservedComponent(scene, load_case, points, component);
+    const Observed observed = WithoutStrayValues(
+        frame, ObservedComponent(scene, load_case, points, component));
     if (component == 0) {
       at = PointsOfTheVolume(scene, load_case, points, observed);
       gradients.assign(static_cast<std::size_t>(at.cols()),
@@ -253,33 +311,6 @@ DeformationSize SizeOf(const std::vector<Eigen::MatrixXd>& gradients,
           *large};
 }
 
-// Returns the rotation R that takes positions nearest to others, by least
-// squares.
-Eigen::MatrixXd NearestRotation(const Eigen::MatrixXd& from,
-                                const Eigen::MatrixXd& to) {
-  const SingularValueDecomposition svd =
-      DecomposeSingularValues(to * from.transpose());
-  Eigen::VectorXd signs = Eigen::VectorXd::Ones(from.rows());
-  const double handedness = (svd.u * svd.v.transpose()).determinant();
-  signs(from.rows() - 1) = handedness < 0 ? -1 : 1;
-  return svd.u * signs.asDiagonal() * svd.v.transpose();
-}
-
-// Returns the points of which all components were observed, or nothing where
-// some components of a point were observed and others were not.
-std::optional<std::vector<Eigen::Index>> WhollyObserved(
-    const ComponentMask& is_observed) {
-  std::vector<Eigen::Index> observed;
-  for (Eigen::Index i = 0; i < is_observed.cols(); ++i) {
-    if (is_observed.col(i).all()) {
-      observed.push_back(i);
-    } else if (is_observed.col(i).any()) {
-      return std::nullopt;
-    }
-  }
-  return observed;
-}
-
 }  // namespace
 
 DeformationSize MeasureDeformation(const Scene& scene) {
@@ -294,58 +325,6 @@ DeformationSize MeasureDeformation(const Scene& scene) {
     size.rotation = std::max(size.rotation, of_case.rotation);
   }
   return size;
-}
-
-void RemoveFreeRotation(Scene& scene) {
-  for (LoadCase& load_case : scene.load_cases) {
-    RemoveFreeRotation(scene, load_case);
-  }
-}
-
-void RemoveFreeRotation(const Scene& scene, LoadCase& load_case) {
-  if (!scene.is_rigid_motion_free || scene.origin == Origin::kComputed ||
-      !IsMeasured(load_case)) {
-    return;
-  }
-  Eigen::MatrixXd& of_nodes = load_case.displacement;
-  Eigen::MatrixXd& of_points = load_case.points.displacement;
-  const auto nodes = WhollyObserved(
-      of_nodes.size() != 0 && load_case.observed.size() != 0
-          ? load_case.observed
-          : ComponentMask::Constant(of_nodes.rows(), of_nodes.cols(), true));
-  const auto points = WhollyObserved(!of_points.array().isNaN());
-  if (!nodes || !points || nodes->size() + points->size() == 0) {
-    return;
-  }
-  const auto num_nodes = Eigen::Index(nodes->size());
-  const auto num_points = Eigen::Index(points->size());
-  Eigen::MatrixXd before(scene.mesh.Dimension(), num_nodes + num_points);
-  Eigen::MatrixXd after = before;
-  if (num_nodes > 0) {
-    before.leftCols(num_nodes) = scene.mesh.nodes(Eigen::all, *nodes);
-    after.leftCols(num_nodes) = of_nodes(Eigen::all, *nodes);
-  }
-  if (num_points > 0) {
-    before.rightCols(num_points) =
-        PositionsOfPoints(scene, load_case)(Eigen::all, *points);
-    after.rightCols(num_points) = of_points(Eigen::all, *points);
-  }
-  after += before;
-  const Eigen::MatrixXd from = before.colwise() - before.rowwise().mean();
-  const Eigen::MatrixXd to = after.colwise() - after.rowwise().mean();
-  const Eigen::MatrixXd rotation = NearestRotation(from, to);
-  const Eigen::MatrixXd turned = rotation.transpose() * to - from;
-  const double strain = turned.norm() / from.norm();
-  if (!(AngleOf(rotation) >
-        std::clamp(strain, kSmallRotation, kLargeRotation))) {
-    return;
-  }
-  if (num_nodes > 0) {
-    of_nodes(Eigen::all, *nodes) = turned.leftCols(num_nodes);
-  }
-  if (num_points > 0) {
-    of_points(Eigen::all, *points) = turned.rightCols(num_points);
-  }
 }
 
 }  // namespace elastimate

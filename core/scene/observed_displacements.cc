@@ -4,6 +4,7 @@
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mesh/nearest_points.h"
+#include "elastimate/core/scene/camera.h"
 
 namespace elastimate {
 namespace {
@@ -138,6 +139,19 @@ Eigen::VectorXd ToVector(const std::vector<double>& values) {
                                            Eigen::Index(values.size()));
 }
 
+// Returns the displacements by which the cameras turn the nodes, num_dofs x
+// num_load_cases.
+Eigen::MatrixXd DisplacementsByTurns(const Scene& scene) {
+  Eigen::MatrixXd displacements(scene.mesh.NumDofs(),
+                                Eigen::Index(scene.load_cases.size()));
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(scene.mesh.NumDofs());
+  for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
+    displacements.col(k) = TurnOfCamera(scene, scene.load_cases[k])
+                               .SeenDisplacement(scene.mesh, none);
+  }
+  return displacements;
+}
+
 // Returns ObservedDisplacements::GivenNoise; `weights` are not normalised.
 std::optional<double> GivenNoiseOf(const Scene& scene,
                                    const Eigen::VectorXd& weights) {
@@ -167,8 +181,12 @@ ObservedDisplacements::ObservedDisplacements(const Scene& scene)
   held_part_ = ToVector(list.held_part);
   given_noise_ = GivenNoiseOf(scene, weights_);
   Remeasure(scene);
-  norm_ = elastimate::Norm(measured_);
+  if (scene.is_rigid_motion_free) {
+    turn_ = Restrict(DisplacementsByTurns(scene));
+  }
+  norm_ = elastimate::Norm(MeasuredWithoutTurn());
   measured_ /= norm_;
+  turn_ /= norm_;
   weights_ /= norm_;
   held_part_ /= norm_;
   for (Rows& rows : rows_) {

@@ -22,7 +22,8 @@ namespace elastimate {
 /// but where a rigid motion of the whole specimen is free, known displacements
 /// take part in that motion and all rows stay.  Rows are weighted by 1 / s_i
 /// where it is known, and normalised so that the first vector of measurements
-/// has norm 1.
+/// has norm 1.  The turn of a camera (TurnOfCamera), where a rigid motion is
+/// free, does not count in that norm: it is no displacement of the specimen.
 class ObservedDisplacements {
  public:
   /// The observed components of one node, or of another point, in one load
@@ -56,8 +57,12 @@ class ObservedDisplacements {
   }
   Eigen::Index Size() const { return measured_.size(); }
   const Eigen::VectorXd& Measured() const { return measured_; }
-  /// Returns the norm of the first weighted measurement, which is the unit
-  /// here.
+  /// Returns what was measured without the turns of cameras.
+  Eigen::VectorXd MeasuredWithoutTurn() const {
+    return turn_.size() == 0 ? measured_ : measured_ - turn_;
+  }
+  /// Returns the norm of the first weighted measurement without turns, which is
+  /// the unit here.
   double Norm() const { return norm_; }
   /// Returns the displacement that is 1 in each row [length].
   Eigen::VectorXd RowUnits() const { return weights_.cwiseInverse(); }
@@ -100,6 +105,8 @@ class ObservedDisplacements {
   /// The weighted part of the held degrees of freedom in each row.
   Eigen::VectorXd held_part_;
   Eigen::VectorXd measured_;
+  /// The rows of the turns of cameras; empty where none is free.
+  Eigen::VectorXd turn_;
   double norm_;
   std::optional<double> given_noise_;
 };

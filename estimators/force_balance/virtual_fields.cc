@@ -86,7 +86,10 @@ class WorkEstimate {
         forces_(forces),
         free_(scene, options),
         balance_(work, forces) {
-    evidence_.load_imbalance = work.Imbalance(AssembleLoadCases(scene));
+    // Large rotations turn the arms of loads that are in balance.
+    if (forces.Prepared().LargeForces() == nullptr) {
+      evidence_.load_imbalance = work.Imbalance(AssembleLoadCases(scene));
+    }
     evidence_.do_loads_work = balance_.DoLoadsWork();
     evidence_.are_forces_dependent = balance_.NumEquations() < free_.Size();
   }
@@ -299,6 +302,8 @@ Capabilities VirtualFields::WhatItTakes() const {
   capabilities.takes_bounds = true;
   capabilities.takes_degree = true;
   capabilities.takes_materials = true;
+  capabilities.takes_large_strains = true;
+  capabilities.needs_linear_moduli = true;
   return capabilities;
 }
 

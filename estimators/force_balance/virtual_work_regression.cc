@@ -142,9 +142,9 @@ std::optional<BoundedMinimum> MinimizeWorkBalance(const FreeParameters& free,
                                                   WorkBalance& balance) {
   // Ceres' tolerances ask for displacements of this unit.
   const double unit = forces.DisplacementNorm();
-  if (!AreIsotropic(free.All())) {
-    // Where there are many moduli, typical values are far off, and those which
-    // balance the work without weights are near.
+  if (!AreIsotropic(free.All()) || forces.Prepared().LargeForces() != nullptr) {
+    // Where there are many moduli, or strains are large, typical values are far
+    // off, and those which balance the work without weights are near.
     if (const std::optional<Eigen::VectorXd> start =
             free.VariablesOfModuli(balance.LeastSquares())) {
       return MinimizeFrom(free, *start, max_iterations, unit, balance);

@@ -20,9 +20,15 @@ namespace elastimate {
 /// and ||z|| is the size of the smallest correction M lambda of the
 /// displacements, lambda = G^-1 r, that brings the work into balance.
 ///
-/// For one isotropic material, M is the combination of H V and J V, which
-/// VirtualWork keeps as a triangle: an evaluation then takes no pass over the
-/// elements, which on 200 000 tetrahedra makes an estimate nine times as fast.
+/// At large strains, K(theta) is the tangent at the measured q of each load
+/// case, which noise changes to first order by, and f_k(q - M lambda) is f_k(q)
+/// - K_k(q) M lambda.  M and L are then those of each load case.  The forces
+/// must be linear in the moduli (ForceScene::AreNonlinearInModuli).
+///
+/// For one isotropic material of small strains, M is the combination of H V and
+/// J V, which VirtualWork keeps as a triangle: an evaluation then takes no pass
+/// over the elements, which on 200 000 tetrahedra makes an estimate nine times
+/// as fast.
 class WorkBalance {
  public:
   /// `work` has the fields of the scene of `forces`; both outlive this object.
@@ -37,7 +43,8 @@ class WorkBalance {
   /// (num_moduli x n), taken as L^-1 V^T f_k(q - M lambda), which makes that of
   /// ||z||^2 exact.  False where M is singular.  At moduli other than the last
   /// ones, a pass of as many columns as there are fields, and their QR
-  /// factorisation; for derivatives two passes for each load case.
+  /// factorisation, at large strains for each load case; for derivatives two
+  /// passes for each load case, at large strains one for each modulus.
   bool Evaluate(const Eigen::VectorXd& moduli,
                 const Eigen::MatrixXd& directions, Eigen::VectorXd* residual,
                 Eigen::MatrixXd* jacobian);
@@ -45,7 +52,7 @@ class WorkBalance {
   /// The part of jacobian^T jacobian of the last evaluation that noise of
   /// variance 1 makes in the mean, along directions of theta:
   ///
-  ///   N_kl = num_load_cases tr(L^-1 (K_k V)^T (I - P) (K_l V) L^-T),
+  ///   N_kl = sum over load cases of tr(L^-1 (K_k V)^T (I - P) (K_l V) L^-T),
   ///
   /// P = M G^-1 M^T.  For other materials than one isotropic one by random
   /// probes of the fields: a pass of as many columns.
@@ -57,9 +64,28 @@ class WorkBalance {
   Eigen::VectorXd LeastSquares() const;
 
  private:
-  Eigen::MatrixXd Stiffened(const Eigen::VectorXd& moduli) const;
+  /// What weighs the work in a load case, or in all of them.
+  struct Weight {
+    Eigen::MatrixXd stiffened;  ///< M, or rows of the same products.
+    Eigen::MatrixXd factor;     ///< L^T.
+  };
+
+  const Weight& WeightOf(std::size_t load_case) const {
+    return weights_.size() == 1 ? weights_[0] : weights_[load_case];
+  }
+  /// Sets the weights at these moduli; false where M is singular.
+  bool SetWeights(const Eigen::VectorXd& moduli);
+  Eigen::MatrixXd Stiffened(const Eigen::VectorXd& moduli,
+                            std::size_t load_case) const;
+  /// Returns K_k X of each modulus, for displacements X (num_dofs x n).
+  std::vector<Eigen::MatrixXd> Products(std::size_t load_case,
+                                        const Eigen::MatrixXd& displacements);
   /// V^T f_k(M lambda), k x num_moduli.
-  Eigen::MatrixXd WorkOfCorrection(const Eigen::VectorXd& multipliers);
+  Eigen::MatrixXd WorkOfCorrection(std::size_t load_case,
+                                   const Eigen::VectorXd& multipliers);
+  /// Returns the part of a load case in N.
+  Eigen::MatrixXd NoiseOfInformation(std::size_t load_case,
+                                     const Eigen::MatrixXd& directions);
 
   const VirtualWork& work_;
   const ForceResidual& forces_;
@@ -68,10 +94,8 @@ class WorkBalance {
   /// V^T f_k(q) for each load case, k x num_moduli; V^T f.
   std::vector<Eigen::MatrixXd> work_of_columns_;
   Eigen::MatrixXd work_of_loads_;
-  // What follows is that of the last evaluation.
-  Eigen::VectorXd moduli_;
-  Eigen::MatrixXd stiffened_;  ///< M, or rows of the same products.
-  Eigen::MatrixXd factor_;     ///< L^T.
+  Eigen::VectorXd moduli_;  ///< Those of the last evaluation, and of weights_.
+  std::vector<Weight> weights_;
   Work work_done_;
 };
 

@@ -80,6 +80,12 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   if (!why_large.empty() && !capabilities.takes_large_strains) {
     return why_large + ", or use --estimator=iterative-fe";
   }
+  if (!why_large.empty() && capabilities.needs_linear_moduli &&
+      scene.mesh.section.model == SectionModel::kPlaneStress) {
+    return "in plane stress, the forces of large strains are not linear in the "
+           "moduli, which it needs; use --estimator=iterative-fe or "
+           "--estimator=closed-form";
+  }
   if (!capabilities.takes_materials) {
     return "it takes only one isotropic material without known parameters; use "
            "--estimator=iterative-fe or --estimator=virtual-fields";

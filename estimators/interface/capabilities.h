@@ -30,6 +30,9 @@ struct Capabilities {
   bool takes_fields = false;
   /// Laws of large strains.
   bool takes_large_strains = false;
+  /// It needs forces that are linear in the moduli.  In plane stress, those of
+  /// large strains are not.
+  bool needs_linear_moduli = false;
   /// Kinematics::kLarge.
   bool compares_large_strain_laws = false;
   /// Supports that moved by unknown amounts, resultants of supports, and a

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elastimate/core/laws/elasticity.h"
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/error_budget.h"
@@ -273,10 +274,13 @@ struct Estimate {
   Eigen::VectorXd uncorrected_parameters;
   /// Points that lie too far off for noise, and were left out.
   std::vector<Outlier> outliers;
-  /// The fitted displacement of a scene of unknown motion, with the motion but
-  /// for the rotation that RemoveFreeRotation takes out: num_dofs x
+  /// The fitted displacement of a scene of unknown motion, num_dofs x
   /// num_load_cases [length]; empty for other scenes.
   Eigen::MatrixXd fitted_displacement;
+  /// The cameras that see it, one for each load case.  Empty where the rigid
+  /// motion is not free, and where the rotation of the specimen is a linear
+  /// one, which is then a part of the displacement.
+  std::vector<Camera> cameras;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
 

@@ -5,7 +5,6 @@
 #include <sstream>
 #include <utility>
 
-#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
@@ -91,16 +90,10 @@ std::string Estimator::WhyUnsupported(const Scene& scene,
   return elastimate::WhyUnsupported(WhatItTakes(), scene, options);
 }
 
-Estimate Estimator::Run(const Scene& measured,
+Estimate Estimator::Run(const Scene& scene,
                         const EstimatorOptions& options) const {
   Stopwatch stopwatch;
-  ValidateScene(measured);
-  std::optional<Scene> turned;
-  if (measured.is_rigid_motion_free) {
-    turned = measured;
-    RemoveFreeRotation(*turned);
-  }
-  const Scene& scene = turned ? *turned : measured;
+  ValidateScene(scene);
   CheckOptions(options);
   const std::vector<Finding> findings = CheckMeasurements(scene);
   CheckLoads(scene);

@@ -36,6 +36,7 @@ constexpr Row kRows[] = {
     {"outliers_left_out", FindingCode::kOutliersLeftOut},
     {"held_nodes_moved", FindingCode::kHeldNodesMoved},
     {"inverted_elements", FindingCode::kInvertedElements},
+    {"rigid_face_turned", FindingCode::kRigidFaceTurned},
     {"resultants_contradicted", FindingCode::kResultantsContradicted},
     {"regions_may_differ", FindingCode::kRegionsMayDiffer},
     {"laws_fit_alike", FindingCode::kLawsFitAlike},

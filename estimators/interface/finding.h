@@ -45,6 +45,7 @@ enum class FindingCode {
   kOutliersLeftOut,
   kHeldNodesMoved,
   kInvertedElements,
+  kRigidFaceTurned,
   kResultantsContradicted,
   kRegionsMayDiffer,
   kLawsFitAlike,

@@ -545,6 +545,16 @@ Finding InvertedElements(std::size_t load_case, Eigen::Index element,
       "elements are");
 }
 
+Finding RigidFaceTurned(std::size_t load_case, double angle) {
+  return Warning(FindingCode::kRigidFaceTurned,
+                 "a rigid face with free components turned by " +
+                     TwoDigits(kDegreesOfRadian * angle) +
+                     " degrees in load case " + std::to_string(load_case) +
+                     ", of which the fit keeps the first order only",
+                 "hold all components of the face, or measure its nodes "
+                 "(\"displacement\": \"measured\")");
+}
+
 Finding ResultantsContradicted(double distance) {
   return Warning(FindingCode::kResultantsContradicted,
                  "a measured resultant differs from the force of the fit by " +

@@ -116,6 +116,8 @@ Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 /// Names the element that is turned inside out most, with its det F.
 Finding InvertedElements(std::size_t load_case, Eigen::Index element,
                          double volume_ratio);
+/// `angle` is in rad.
+Finding RigidFaceTurned(std::size_t load_case, double angle);
 /// In standard deviations, as stated.
 Finding ResultantsContradicted(double distance);
 // What a series of frames shows.

@@ -111,6 +111,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   RequireParameters(estimate);
   JudgeKinematics(scene, estimate);
   JudgeInversion(scene, estimate);
+  JudgeRigidFaces(scene, estimate);
   JudgeThickness(scene, estimate);
   ApplyPriors(scene, options, estimate);
   estimate.stiffnesses = StiffnessesOf(scene, estimate);

@@ -7,6 +7,7 @@
 
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mechanics/large_strain_forces.h"
+#include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 
@@ -73,6 +74,30 @@ VolumeRatio SmallestMeasuredRatio(const Scene& scene, std::size_t k) {
   return {smallest.value, measured[smallest.element]};
 }
 
+bool HasLargeStrains(const Scene& scene, const Estimate& estimate) {
+  return HasLargeStrainLaw(scene.materials) ||
+         !estimate.large_strain_law.empty();
+}
+
+// Returns the largest rotation, to first order, of a rigid face that has free
+// components.
+double LargestLinearTurn(const Scene& scene, Eigen::Index k,
+                         const Eigen::MatrixXd& displacement) {
+  const int dimension = scene.mesh.Dimension();
+  double largest = 0;
+  for (const RigidFace& face : SupportsOf(scene, k).rigid_faces) {
+    if (!face.components.all()) {
+      const Eigen::VectorXd motion = RigidMotionNearest(
+          scene.mesh.nodes(Eigen::all, face.nodes),
+          displacement.col(k).reshaped(dimension, scene.mesh.NumNodes())(
+              Eigen::all, face.nodes));
+      largest = std::max(
+          largest, motion.tail(NumRigidMotions(dimension) - dimension).norm());
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 bool IsMentioned(const DeformationSize& size) {
@@ -120,9 +145,7 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
 }
 
 void JudgeInversion(const Scene& scene, Estimate& estimate) {
-  const bool has_large_strains =
-      HasLargeStrainLaw(scene.materials) || !estimate.large_strain_law.empty();
-  if (!has_large_strains || estimate.series ||
+  if (!HasLargeStrains(scene, estimate) || estimate.series ||
       estimate.Has(FindingCode::kInvertedElements)) {
     return;
   }
@@ -138,6 +161,27 @@ void JudgeInversion(const Scene& scene, Estimate& estimate) {
   if (smallest.value <= 0) {
     estimate.Add(
         InvertedElements(load_case + 1, smallest.element, smallest.value));
+  }
+}
+
+void JudgeRigidFaces(const Scene& scene, Estimate& estimate) {
+  const Eigen::MatrixXd& displacement = estimate.fitted_displacement;
+  if (!HasLargeStrains(scene, estimate) || estimate.series ||
+      displacement.rows() != scene.mesh.NumDofs() ||
+      estimate.Has(FindingCode::kRigidFaceTurned)) {
+    return;
+  }
+  double largest = 0;
+  Eigen::Index load_case = 0;
+  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
+    const double turn = LargestLinearTurn(scene, k, displacement);
+    if (turn > largest) {
+      largest = turn;
+      load_case = k;
+    }
+  }
+  if (largest >= kLimits.mentioned_rotation) {
+    estimate.Add(RigidFaceTurned(std::size_t(load_case) + 1, largest));
   }
 }
 

@@ -39,6 +39,11 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate);
 /// looked at.  A pass for each load case.
 void JudgeInversion(const Scene& scene, Estimate& estimate);
 
+/// Warns, where laws of large strains were fitted, of the rigid face that
+/// turned most of those with free components, from 3 degrees on (finding
+/// `rigid_face_turned`).
+void JudgeRigidFaces(const Scene& scene, Estimate& estimate);
+
 /// Adds the standard deviation of the thickness to those of moduli, and warns
 /// of it, once.
 void JudgeThickness(const Scene& scene, Estimate& estimate);

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/input_checks.h"
@@ -131,7 +130,6 @@ Estimate PreparedEstimator::Run(
 }
 
 Estimate PreparedEstimator::RunHere() {
-  RemoveFreeRotation(state_->scene);
   const Scene& scene = state_->scene;
   const std::vector<Finding> findings = CheckMeasurements(scene);
   Estimate estimate = state_->preparation->Run(scene);

@@ -43,7 +43,9 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
                                 const MaterialFit& fit,
                                 const std::vector<Outlier>& left_out) {
   constexpr double kFarFromUnknown = 3;
-  const OutlierSearch search(scene, observed, fit.displacement);
+  const OutlierSearch search(
+      scene, observed,
+      SeenDisplacements(scene.mesh, fit.displacement, fit.cameras));
   const std::vector<Outlier> far = search.Beyond(kFarFromUnknown);
   std::vector<Outlier> outliers = search.Beyond(1);
   const auto is_among = [](const std::vector<Outlier>& all,

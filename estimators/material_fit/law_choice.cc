@@ -241,7 +241,7 @@ Eigen::MatrixXd CovarianceOf(const MaterialFit& fit, const Scene& scene,
   const Eigen::MatrixXd jacobian = free.ModuliJacobian(fit.errors.corrected);
   const ObservedDisplacements observed(scene);
   const double part = std::sqrt(fit.errors.variance * double(observed.Size())) /
-                      Norm(observed.Measured());
+                      Norm(observed.MeasuredWithoutTurn());
   const double factor = std::max(1.0, kLeastPart / part);
   return factor * factor * jacobian * fit.errors.total * jacobian.transpose();
 }

@@ -125,6 +125,7 @@ MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
   }
   if (HasUnknownMotion(scene)) {
     fit.estimate.fitted_displacement = fit.displacement;
+    fit.estimate.cameras = fit.cameras;
   }
   return fit;
 }

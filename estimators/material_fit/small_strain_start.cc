@@ -8,7 +8,6 @@
 #include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/materials/isotropic_law.h"
-#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/misfit/descent.h"
 
@@ -50,30 +49,6 @@ void MultiplyModuli(const MaterialParameters& all, double factor,
   }
 }
 
-// Turns what a camera saw back as well as the points of which all components
-// were measured tell.  The others are left out, unless there are no others than
-// these.
-Scene WithoutTurnOfCamera(Scene scene) {
-  for (LoadCase& load_case : scene.load_cases) {
-    LoadCase whole = load_case;
-    for (auto observed : whole.observed.colwise()) {
-      observed.setConstant(observed.all());
-    }
-    for (auto displacement : whole.points.displacement.colwise()) {
-      if (displacement.array().isNaN().any()) {
-        displacement.setConstant(std::nan(""));
-      }
-    }
-    const bool has_nodes = whole.displacement.size() != 0 &&
-                           (whole.observed.size() == 0 || whole.observed.any());
-    if (has_nodes || !whole.points.displacement.array().isNaN().all()) {
-      RemoveFreeRotation(scene, whole);
-      load_case = whole;
-    }
-  }
-  return scene;
-}
-
 // Fits E of isotropic materials that have the Poisson's ratios of `at_rest`.  A
 // material without free moduli keeps its E.
 std::optional<Eigen::VectorXd> FitYoungsModuli(
@@ -87,9 +62,6 @@ std::optional<Eigen::VectorXd> FitYoungsModuli(
     if (!HasFreeModulus(all, i)) {
       material.known.push_back({"youngs_modulus", at_rest[i].youngs_modulus});
     }
-  }
-  if (scene.is_rigid_motion_free) {
-    scene = WithoutTurnOfCamera(std::move(scene));
   }
   EstimatorOptions of_start = options;
   of_start.known_poisson_ratio.reset();

@@ -147,6 +147,37 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                        options_, misfit_, fit_.estimate);
 }
 
+// Linear elasticity turns a specimen by displacements that are linear in the
+// rotation, and a camera turns by a finite one.  Which one is among computed
+// displacements is not known.
+std::optional<BoundedMinimum> SpaceFit::FindOverRotations(
+    Descent descent, const std::optional<Eigen::VectorXd>& start) {
+  using Rotations = MotionElimination::Rotations;
+  if (!scene_.is_rigid_motion_free || misfit_.HasLargeStrains() ||
+      scene_.origin != Origin::kComputed) {
+    return FindMinimum(descent, start);
+  }
+  misfit_.SetRotations(Rotations::kLinear);
+  const std::optional<BoundedMinimum> linear = FindMinimum(descent, start);
+  misfit_.SetRotations(Rotations::kFinite);
+  const std::optional<BoundedMinimum> finite = FindMinimum(descent, start);
+  if (finite && (!linear || finite->cost < linear->cost)) {
+    return linear ? WithOtherModel(*finite, *linear) : finite;
+  }
+  misfit_.SetRotations(Rotations::kLinear);
+  return linear && finite ? WithOtherModel(*linear, *finite) : linear;
+}
+
+BoundedMinimum SpaceFit::WithOtherModel(BoundedMinimum best,
+                                        const BoundedMinimum& other) {
+  // Chi^2 of models between which the data do not decide differ by less.
+  constexpr double kAlike = 9;
+  if (2 * (other.cost - best.cost) < kAlike * misfit_.Variance(2 * best.cost)) {
+    best.of_other_model = other.variables;
+  }
+  return best;
+}
+
 // Linear hexahedra and quadrilaterals of other codes take the volume of points
 // where materials are compressible.  Which ones computed the displacements is
 // not known, and of a specimen neither explains much more.
@@ -174,12 +205,7 @@ std::optional<BoundedMinimum> SpaceFit::FindAtLargeStrains(
     std::swap(best, other);
     misfit_.SetDilatation(Dilatation::kMeanOfElement);
   }
-  // Chi^2 of models between which the data do not decide differ by less.
-  constexpr double kAlike = 9;
-  if (2 * (other.cost - best.cost) < kAlike * misfit_.Variance(2 * best.cost)) {
-    best.of_other_model = other.variables;
-  }
-  return best;
+  return WithOtherModel(best, other);
 }
 
 // The best minimum of all starts, with another axis that is nearly as probable.
@@ -220,7 +246,7 @@ void SpaceFit::Minimize(Descent descent,
   Estimate& estimate = fit_.estimate;
   Stopwatch stopwatch;
   const Work before = WorkDone();
-  fit_.minimum = FindMinimum(descent, start);
+  fit_.minimum = FindOverRotations(descent, start);
   if (options_.loss != Loss::kNone && fit_.minimum) {
     Reweigh();
   }
@@ -247,6 +273,7 @@ void SpaceFit::EnterMinimum() {
   Eigen::VectorXd rows;
   if (misfit_.Evaluate(fit_.minimum->variables, &rows, nullptr)) {
     fit_.displacement = misfit_.FittedDisplacement();
+    fit_.cameras = misfit_.Cameras();
     square_sum_ = SquaredNorm(rows.head(misfit_.Observed().Size()));
   }
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -28,8 +29,10 @@ struct MaterialFit {
   /// Empty where there is no fit.
   std::optional<BoundedMinimum> minimum;
   MinimumErrors errors;
-  /// The fitted displacement; empty where there is no fit.
+  /// The fitted displacement, num_dofs x num_load_cases, and the cameras that
+  /// see it, as DisplacementMisfit has them; empty where there is no fit.
   Eigen::MatrixXd displacement;
+  std::vector<Camera> cameras;
   /// Whether the data hardly prefer an axis that was found to another one.
   bool has_rival_axis = false;
 
@@ -89,6 +92,12 @@ class SpaceFit {
   void Reweigh();
   std::optional<BoundedMinimum> FindMinimum(
       Descent descent, const std::optional<Eigen::VectorXd>& start);
+  std::optional<BoundedMinimum> FindOverRotations(
+      Descent descent, const std::optional<Eigen::VectorXd>& start);
+  /// Notes the variables of the other one of two models beside the better one,
+  /// where the data do not decide between them.
+  BoundedMinimum WithOtherModel(BoundedMinimum best,
+                                const BoundedMinimum& other);
   std::optional<BoundedMinimum> FindOverAxes(Descent descent);
   std::optional<BoundedMinimum> FindAtLargeStrains(
       const std::optional<Eigen::VectorXd>& start);

@@ -69,6 +69,11 @@ void DisplacementMisfit::SetDilatation(Dilatation dilatation) {
   x_.resize(0);
 }
 
+void DisplacementMisfit::SetRotations(MotionElimination::Rotations rotations) {
+  motion_->SetRotations(rotations);
+  x_.resize(0);
+}
+
 void DisplacementMisfit::CompareAnew() {
   if (x_.size() != 0) {
     residual_ = observed_.Restrict(Displacement()) - observed_.Measured();
@@ -165,6 +170,9 @@ std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
   if (SquaredNorm(by_loads) > 0) {
     Eigen::VectorXd rest = -WithoutMotion(held);
     rest.head(observed_.Size()) += observed_.Measured();
+    if (motion_) {
+      rest.head(observed_.Size()) -= observed_.Restrict(motion_->SeenAtRest());
+    }
     const double compliance =
         loss == Loss::kNone
             ? InnerProduct(by_loads, rest) / SquaredNorm(by_loads)

@@ -48,6 +48,9 @@ class DisplacementMisfit {
   /// Evaluates the volume of elements in another way from now on.
   /// Precondition: HasLargeStrains.
   void SetDilatation(Dilatation dilatation);
+  /// Takes such rotations of the whole specimen from now on.  Precondition: its
+  /// rigid motion is free.
+  void SetRotations(MotionElimination::Rotations rotations);
 
   /// Takes these nodes for neighbours in statistics of the residual: those of
   /// the mesh that was measured, whose nodes have none in a finer one.
@@ -118,13 +121,17 @@ class DisplacementMisfit {
   bool SolutionAt(const Eigen::VectorXd& x, Eigen::MatrixXd* displacement,
                   Eigen::MatrixXd* sensitivities);
 
-  /// u where the last Evaluate was, num_dofs x num_load_cases: in the specimen,
-  /// and as a camera sees it that may have moved.
+  /// u where the last Evaluate was, num_dofs x num_load_cases: that of the
+  /// model; with a motion of all that is linear (MotionElimination); and as
+  /// cameras see it, where there are some.
   const Eigen::MatrixXd& Displacement() const {
     return placed_ ? placed_->displacement : model_->Displacement();
   }
   Eigen::MatrixXd FittedDisplacement() const {
     return motion_ ? motion_->FittedDisplacement() : Displacement();
+  }
+  std::vector<Camera> Cameras() const {
+    return motion_ ? motion_->Cameras() : std::vector<Camera>();
   }
 
   /// A factor on the displacements, and what it leaves.

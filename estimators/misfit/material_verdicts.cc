@@ -97,7 +97,7 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
   // What is left of exact displacements says nothing.
   constexpr double kRounding = 1e-9;
   const bool is_rounding =
-      Norm(errors.residual) < kRounding * Norm(observed.Measured());
+      Norm(errors.residual) < kRounding * Norm(observed.MeasuredWithoutTurn());
   double highest_score = kLimits.significant_score;
   const MaterialEstimate* worst = nullptr;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {

@@ -64,7 +64,8 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
       DescribeCorrelation(scene, observed, residual, sensitivities);
   estimate.correlation_length = correlated.length;
   const double smooth = correlated.share_of_model * smooth_part;
-  evidence.smooth_part = std::sqrt(smooth) / Norm(observed.Measured());
+  evidence.smooth_part =
+      std::sqrt(smooth) / Norm(observed.MeasuredWithoutTurn());
   return share * inverse * correlated.gram * inverse +
          (variance > 0 ? smooth / variance : 0) * inverse;
 }
@@ -323,7 +324,8 @@ void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
                  Estimate& estimate) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
   // What is left of exact displacements is rounding, which has no outliers.
-  if (Norm(residual) > kLimits.exact_residual * Norm(observed.Measured()) &&
+  if (Norm(residual) >
+          kLimits.exact_residual * Norm(observed.MeasuredWithoutTurn()) &&
       HasHeavyTails(residual)) {
     const Eigen::Index size = sensitivities.rows() + free.Size();
     Eigen::MatrixXd all(size, free.Size());
@@ -460,7 +462,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   errors.corrected = errors.variables;
   errors.residual = rows.head(observed.Size());
   estimate.displacement_residual =
-      Norm(errors.residual) / Norm(observed.Measured());
+      Norm(errors.residual) / Norm(observed.MeasuredWithoutTurn());
   const Eigen::Index num_fitted =
       free.Size() + misfit.NumAmounts() - misfit.NumResultants();
   if (AreTooFew(observed, num_fitted, evidence)) {

@@ -42,39 +42,62 @@ MotionElimination::MotionElimination(const Scene& scene,
                                      const ObservedDisplacements& observed,
                                      ForwardModel& model)
     : scene_(scene), observed_(observed), model_(model) {
-  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  for (Eigen::Index k = 0; k < Eigen::Index(scene.load_cases.size()); ++k) {
+    first_resultant_.push_back(NumResultants());
+    AddResultants(scene, k);
+  }
+  first_resultant_.push_back(NumResultants());
+  SetRotations(Rotations::kFinite);
+}
+
+void MotionElimination::SetRotations(Rotations rotations) {
+  const Mesh& mesh = scene_.mesh;
+  cameras_.clear();
+  motions_.clear();
+  motion_of_case_.clear();
+  first_amount_.clear();
+  columns_.clear();
+  are_columns_of_here_ = false;
   std::vector<const Supports*> supports_of_motion;
   Eigen::Index num_amounts = 0;
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const Supports& supports = SupportsOf(scene, k);
-    const auto same = model.IsLinear()
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    const Supports& supports = SupportsOf(scene_, k);
+    if (scene_.is_rigid_motion_free && rotations == Rotations::kFinite) {
+      cameras_.push_back(TurnOfCamera(scene_, scene_.load_cases[k]));
+    }
+    const auto same = model_.IsLinear() && cameras_.empty()
                           ? std::find(supports_of_motion.begin(),
                                       supports_of_motion.end(), &supports)
                           : supports_of_motion.end();
     motion_of_case_.push_back(same - supports_of_motion.begin());
     if (same == supports_of_motion.end()) {
       supports_of_motion.push_back(&supports);
-      motions_.emplace_back(scene, supports);
+      motions_.emplace_back(
+          scene_, supports,
+          UnknownMotion::Positions{mesh.nodes, SeenAtRest(k)});
     }
     first_amount_.push_back(num_amounts);
     num_amounts += MotionOf(k).NumAmounts();
-    first_resultant_.push_back(NumResultants());
-    AddResultants(scene, k);
   }
-  first_resultant_.push_back(NumResultants());
   amounts_.setZero(num_amounts);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
     const Eigen::SparseMatrix<double>& of_supports = MotionOf(k).of_supports;
     AmountsOf(k, amounts_).head(of_supports.cols()) =
-        of_supports.transpose() * MeasuredSupports(scene, k);
+        of_supports.transpose() * MeasuredMotionOfSupports(k);
   }
   held_ = HeldMotion(amounts_);
-  if (scene.is_rigid_motion_free && !model.IsLinear()) {
-    const int dimension = scene.mesh.Dimension();
-    cameras_.assign(scene.load_cases.size(),
-                    {Eigen::MatrixXd::Identity(dimension, dimension),
-                     Eigen::VectorXd::Zero(dimension)});
+}
+
+Eigen::VectorXd MotionElimination::MeasuredMotionOfSupports(
+    Eigen::Index k) const {
+  Eigen::VectorXd measured = MeasuredSupports(scene_, k);
+  if (cameras_.empty()) {
+    return measured;
   }
+  const Eigen::VectorXd by_camera =
+      (SeenAtRest(k) - scene_.mesh.nodes).reshaped();
+  return TurnedBack(k,
+                    (measured.array() != 0).select(measured - by_camera, 0.0));
 }
 
 void MotionElimination::AddResultants(const Scene& scene, Eigen::Index k) {
@@ -114,7 +137,9 @@ std::optional<Eigen::VectorXd> MotionElimination::Refit() {
     if (i > 0) {
       SolveForColumns();
     }
-    Eigen::VectorXd rows = RowsOf(FittedDisplacement(), model_.SupportForces());
+    Eigen::VectorXd rows =
+        RowsOf(SeenDisplacements(scene_.mesh, FittedDisplacement(), cameras_),
+               model_.SupportForces());
     rows.head(observed_.Size()) -= observed_.Measured();
     rows.tail(NumResultants()) -= noise_ * MeasuredResultants();
     const double before = Norm(rows);
@@ -122,7 +147,8 @@ std::optional<Eigen::VectorXd> MotionElimination::Refit() {
     if (!Move(-surplus)) {
       return std::nullopt;
     }
-    if (model_.IsLinear() || before - Norm(rows) <= kSettled * before ||
+    if ((model_.IsLinear() && cameras_.empty()) ||
+        before - Norm(rows) <= kSettled * before ||
         Norm(surplus) <=
             kSettled * (Norm(amounts_) + model_.Displacement().norm())) {
       return rows;
@@ -139,7 +165,7 @@ bool MotionElimination::Move(const Eigen::VectorXd& increments) {
   }
   for (Eigen::Index k = 0; k < Eigen::Index(cameras_.size()); ++k) {
     const Eigen::MatrixXd& of_all = MotionOf(k).of_all;
-    const Eigen::MatrixXd seen = SeenPositions(k);
+    const Eigen::MatrixXd seen = PositionsOfCamera(k);
     Eigen::VectorXd motion = RigidMotionNearest(
         seen, (of_all * AmountsOf(k, increments).tail(of_all.cols()))
                   .reshaped(seen.rows(), seen.cols()));
@@ -153,26 +179,34 @@ bool MotionElimination::Move(const Eigen::VectorXd& increments) {
   return model_.MoveSupports(change);
 }
 
-Eigen::MatrixXd MotionElimination::SeenPositions(Eigen::Index k) const {
+Eigen::MatrixXd MotionElimination::SeenAtRest(Eigen::Index k) const {
+  const Eigen::MatrixXd& nodes = scene_.mesh.nodes;
+  return cameras_.empty() ? nodes : cameras_[k].Seen(nodes);
+}
+
+// At small strains, a trial of moduli that are far too small displaces the
+// specimen by many times its size, about which a rotation would mean nothing.
+Eigen::MatrixXd MotionElimination::PositionsOfCamera(Eigen::Index k) const {
   const Mesh& mesh = scene_.mesh;
+  if (model_.IsLinear()) {
+    return SeenAtRest(k);
+  }
   const Eigen::MatrixXd positions =
       mesh.nodes +
       model_.Displacement().col(k).reshaped(mesh.Dimension(), mesh.NumNodes());
-  return cameras_.empty()
-             ? positions
-             : Eigen::MatrixXd((cameras_[k].rotation * positions).colwise() +
-                               cameras_[k].translation);
+  return cameras_.empty() ? positions : cameras_[k].Seen(positions);
+}
+
+Eigen::MatrixXd MotionElimination::SeenAtRest() const {
+  return SeenDisplacements(
+      scene_.mesh,
+      Eigen::MatrixXd::Zero(model_.Load().rows(), observed_.NumLoadCases()),
+      cameras_);
 }
 
 Eigen::MatrixXd MotionElimination::FittedDisplacement() const {
-  if (cameras_.empty()) {
-    return WithMotionOfAll(amounts_, model_.Displacement());
-  }
-  Eigen::MatrixXd displacement = model_.Displacement();
-  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
-    displacement.col(k) = (SeenPositions(k) - scene_.mesh.nodes).reshaped();
-  }
-  return displacement;
+  return cameras_.empty() ? WithMotionOfAll(amounts_, model_.Displacement())
+                          : model_.Displacement();
 }
 
 Eigen::MatrixXd MotionElimination::Turned(
@@ -196,12 +230,14 @@ Eigen::MatrixXd MotionElimination::Turned(Eigen::MatrixXd changes) const {
 }
 
 void MotionElimination::Linearize() {
+  const Mesh& mesh = scene_.mesh;
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
-    const Mesh& mesh = scene_.mesh;
-    UnknownMotion about(
-        scene_, SupportsOf(scene_, k),
-        {mesh.nodes + held_.col(k).reshaped(mesh.Dimension(), mesh.NumNodes()),
-         SeenPositions(k)});
+    Eigen::MatrixXd of_faces = mesh.nodes;
+    if (!model_.IsLinear()) {
+      of_faces += held_.col(k).reshaped(mesh.Dimension(), mesh.NumNodes());
+    }
+    UnknownMotion about(scene_, SupportsOf(scene_, k),
+                        {of_faces, PositionsOfCamera(k)});
     UnknownMotion& motion = motions_[motion_of_case_[k]];
     // Nodes that are on a line to within rounding may be off it once moved.
     if (about.of_supports.cols() == motion.of_supports.cols() &&
@@ -367,7 +403,7 @@ bool MotionElimination::AreAmountsFew() const {
 }
 
 void MotionElimination::SolveForColumns() {
-  if (!model_.IsLinear()) {
+  if (!model_.IsLinear() || !cameras_.empty()) {
     Linearize();
   }
   are_columns_of_here_ = false;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -20,11 +21,11 @@ namespace elastimate {
 ///
 ///   A x = rows of (Extend(G b) + R a).
 ///
-/// Beside large strains, rotations are of any size: the displacement that a
-/// camera sees is C (X + u) + c - X, with a rotation C and a translation c of
-/// each load case, and rigid faces turn likewise.  Then x are increments about
-/// the present state, of which C, c and the displacement of supports are made
-/// up by finite rotations, and
+/// Rotations are of any size: the displacement that a camera sees is C (X + u)
+/// + c - X, with a rotation C and a translation c of each load case (Camera),
+/// and rigid faces turn likewise beside large strains.  Then x are increments
+/// about the present state, of which C, c and the displacement of supports are
+/// made up by finite rotations, and
 ///
 ///   A x = rows of (C Extend(G b) + R a),
 ///
@@ -54,6 +55,13 @@ class MotionElimination {
   }
   Eigen::Index NumAmounts() const { return amounts_.size(); }
 
+  /// Whether cameras turn by finite rotations, or the motion of the whole
+  /// specimen is R a, as in displacements that linear elasticity computed.
+  enum class Rotations { kFinite, kLinear };
+  /// Begins anew with such rotations; they are finite until this is called.
+  /// Precondition of kLinear: the model is linear.
+  void SetRotations(Rotations rotations);
+
   /// Sets the standard deviation of a displacement row, which weighs the
   /// resultants; zero leaves them out.
   void SetNoise(double standard_deviation);
@@ -72,9 +80,14 @@ class MotionElimination {
   /// Fits again at the moduli of the last Fit, under another noise.
   std::optional<Eigen::VectorXd> Refit();
 
-  /// The displacements of the model with the motion of all of the last Fit:
-  /// num_dofs x num_load_cases.
+  /// The displacements of the specimen by the last Fit, with the motion R a of
+  /// all where rotations are linear: num_dofs x num_load_cases.
   Eigen::MatrixXd FittedDisplacement() const;
+  /// The cameras that see them, one for each load case; none where rotations
+  /// are linear, or the motion of all is not free.
+  const std::vector<Camera>& Cameras() const { return cameras_; }
+  /// The displacements that the cameras see of the undeformed nodes.
+  Eigen::MatrixXd SeenAtRest() const;
 
   /// The rows of changes of displacements and of forces of supports, num_dofs x
   /// num_load_cases, without what amounts could explain.
@@ -111,12 +124,6 @@ class MotionElimination {
     Eigen::MatrixXd inverse_gram;
   };
 
-  /// How a camera sees positions x: as rotation x + translation.
-  struct Camera {
-    Eigen::MatrixXd rotation;
-    Eigen::VectorXd translation;
-  };
-
   Eigen::Index NumResultantsOf(Eigen::Index k) const {
     return first_resultant_[k + 1] - first_resultant_[k];
   }
@@ -134,9 +141,13 @@ class MotionElimination {
   }
   Eigen::VectorXd ResultantsOfCase(Eigen::Index k,
                                    const Eigen::VectorXd& support_forces) const;
-  /// Returns where the camera of load case `k` sees the nodes of the model:
-  /// dimension x num_nodes.
-  Eigen::MatrixXd SeenPositions(Eigen::Index k) const;
+  /// Returns where the camera of load case `k` sees the undeformed nodes, and
+  /// the positions about which it turns: dimension x num_nodes.
+  Eigen::MatrixXd SeenAtRest(Eigen::Index k) const;
+  Eigen::MatrixXd PositionsOfCamera(Eigen::Index k) const;
+  /// Returns the measured displacement of supports in the frame of the
+  /// specimen, num_dofs.
+  Eigen::VectorXd MeasuredMotionOfSupports(Eigen::Index k) const;
   /// Turns changes of displacements in load case `k` (num_dofs x n) as its
   /// camera does, or back; as they are where no camera turns.
   Eigen::MatrixXd Turned(Eigen::Index k, const Eigen::MatrixXd& changes) const;
@@ -146,9 +157,9 @@ class MotionElimination {
   Eigen::MatrixXd Turned(Eigen::MatrixXd changes) const;
   /// Takes the increments of motions about the present state.
   void Linearize();
-  /// Adds increments to the motions, by finite rotations where the model is not
-  /// linear, and moves the supports of the model likewise.  False where that
-  /// has no equilibrium.
+  /// Adds increments to the motions, those of cameras and, where the model is
+  /// not linear, of rigid faces by finite rotations, and moves the supports of
+  /// the model likewise.  False where that has no equilibrium.
   bool Move(const Eigen::VectorXd& increments);
   /// Where amounts are few, a solve for each, unless others' will do.
   void SolveForColumns();
@@ -177,7 +188,7 @@ class MotionElimination {
   const ObservedDisplacements& observed_;
   ForwardModel& model_;
   /// One for each set of supports, or for each load case where the model is
-  /// not linear, since tangents and rotations differ.
+  /// not linear or there are cameras, since tangents and rotations differ.
   std::vector<UnknownMotion> motions_;
   std::vector<std::size_t> motion_of_case_;
   std::vector<Eigen::Index> first_amount_;  ///< By load cases.
@@ -186,10 +197,9 @@ class MotionElimination {
   std::vector<Columns> columns_;  ///< By load cases; empty where they are many.
   bool are_columns_of_here_ = false;  ///< Rather than of other moduli.
   double noise_ = 0;
-  Eigen::VectorXd amounts_;  ///< In all load cases, by the last fit.
-  Eigen::MatrixXd held_;     ///< The motion of supports by these amounts.
-  /// By load cases, where rotations of the camera are of any size; else empty.
-  std::vector<Camera> cameras_;
+  Eigen::VectorXd amounts_;      ///< In all load cases, by the last fit.
+  Eigen::MatrixXd held_;         ///< The motion of supports by these amounts.
+  std::vector<Camera> cameras_;  ///< By load cases; see Cameras().
 };
 
 }  // namespace elastimate

@@ -106,7 +106,11 @@ class FoldPredictor {
                 const EstimatorOptions& options)
       : spaces_(FittedSpaces(held_out, estimate)),
         misfit_(SpacesOfMisfit(spaces_), options),
-        estimate_(estimate) {}
+        estimate_(estimate) {
+    if (held_out.is_rigid_motion_free && estimate.cameras.empty()) {
+      misfit_.SetRotations(MotionElimination::Rotations::kLinear);
+    }
+  }
 
   const ObservedDisplacements& Observed() const { return misfit_.Observed(); }
   Eigen::Index NumNodes() const { return spaces_.back().mesh.NumNodes(); }
@@ -132,7 +136,7 @@ class FoldPredictor {
     rows.error.array() *= unit.array();
     rows.prediction.square_sum = rows.difference.squaredNorm();
     rows.prediction.measured_square_sum =
-        unit.cwiseProduct(Observed().Measured()).squaredNorm();
+        unit.cwiseProduct(Observed().MeasuredWithoutTurn()).squaredNorm();
     return rows;
   }
 

@@ -11,7 +11,7 @@
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/middle_nodes.h"
-#include "elastimate/core/scene/deformation_size.h"
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
@@ -159,11 +159,9 @@ class FieldCollector {
   Fields& fields_;
 };
 
-// Subtracts the displacement from the measured one.  Where the rotation of each
-// load case is free, it is taken out first, as the estimate does.
-Eigen::MatrixXd MeasuredMinus(Scene scene,
+// Subtracts the displacement from the measured one.
+Eigen::MatrixXd MeasuredMinus(const Scene& scene,
                               const Eigen::MatrixXd& displacement) {
-  RemoveFreeRotation(scene);
   Eigen::MatrixXd difference =
       Eigen::MatrixXd::Zero(displacement.rows(), displacement.cols());
   const int dimension = scene.mesh.Dimension();
@@ -183,8 +181,7 @@ Eigen::MatrixXd MeasuredMinus(Scene scene,
 // Does what MeasuredMinus does at the points of each load case: dimension x
 // num_points.
 std::vector<Eigen::MatrixXd> MeasuredMinusAtPoints(
-    Scene scene, const Eigen::MatrixXd& displacement) {
-  RemoveFreeRotation(scene);
+    const Scene& scene, const Eigen::MatrixXd& displacement) {
   const Mesh& mesh = scene.mesh;
   std::vector<Eigen::MatrixXd> differences;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
@@ -267,12 +264,16 @@ Eigen::MatrixXd ReactionOf(const Scene& scene, const SolvedScenes& solved,
              : MiddleNodes(solved.undivided.mesh).Restrict(reaction);
 }
 
-// Adds the displacements of a model, and what they leave of the measured ones
-// and, by `imbalance` of internal forces and loads, of the supports.
+// Adds the displacements of a model as the cameras see them, and what they
+// leave of the measured ones and, by `imbalance` of internal forces and loads,
+// of the supports.
 void AddFitted(const Scene& scene, const SolvedScenes& solved,
-               const Eigen::MatrixXd& fitted, const Eigen::MatrixXd& imbalance,
-               const Estimate& estimate, SceneResults& results) {
+               const Eigen::MatrixXd& of_specimen,
+               const Eigen::MatrixXd& imbalance, const Estimate& estimate,
+               SceneResults& results) {
   FieldCollector collector(scene.mesh, results.fields);
+  const Eigen::MatrixXd fitted =
+      SeenDisplacements(solved.Finest().mesh, of_specimen, estimate.cameras);
   const Eigen::MatrixXd difference = MeasuredMinus(solved.Finest(), fitted);
   const Eigen::MatrixXd reaction = ReactionOf(scene, solved, imbalance);
   collector.AddOutliers(estimate.outliers);
@@ -349,27 +350,6 @@ void AddModel(const Scene& scene, const Scene& modelled,
   }
 }
 
-// Adds the displacements that the camera of a fit sees, and what they leave of
-// the measured ones.  It has turned, so that they tell no reactions under loads
-// that have not.
-void AddSeen(const Scene& scene, const Scene& modelled,
-             const Estimate& estimate, SceneResults& results) {
-  const Eigen::MatrixXd& fitted = estimate.fitted_displacement;
-  if (fitted.size() == 0) {
-    return;
-  }
-  FieldCollector collector(scene.mesh, results.fields);
-  const Scene& of_fit =
-      fitted.rows() == modelled.mesh.NumDofs() ? modelled : scene;
-  const Eigen::MatrixXd difference = MeasuredMinus(of_fit, fitted);
-  collector.AddOutliers(estimate.outliers);
-  for (Eigen::Index k = 0; k < fitted.cols(); ++k) {
-    collector.AddPoint("fitted_displacement", k, fitted);
-    collector.AddPoint("displacement_residual", k, difference);
-  }
-  results.point_residuals = MeasuredMinusAtPoints(of_fit, fitted);
-}
-
 // Adds what the model says at these parameters of its laws of large strains;
 // nothing where supports do not hold the specimen, or where there is no
 // equilibrium.
@@ -377,10 +357,6 @@ void AddLargeStrainModel(const Scene& scene, const Scene& modelled,
                          const Eigen::VectorXd& values,
                          const Estimate& estimate, SceneResults& results) {
   if (!WhyNotHeld(scene).empty()) {
-    return;
-  }
-  if (scene.is_rigid_motion_free) {
-    AddSeen(scene, modelled, estimate, results);
     return;
   }
   const auto solve = [&values](const Scene& of) {

@@ -31,8 +31,9 @@ struct SceneResults {
 /// they were before the correction for what the elements miss.
 ///
 /// With a physical E and nu and a specimen that is held, the fields are:
-/// `fitted_displacement`; `displacement_residual` (measured minus fitted where
-/// observed, else zero); where finer elements than those of `scene` were
+/// `fitted_displacement`, as the camera sees it that the fit found, if there is
+/// one (Estimate::cameras); `displacement_residual` (measured minus fitted
+/// where observed, else zero); where finer elements than those of `scene` were
 /// fitted, `mesh_error` (their displacement minus that of the elements of
 /// `scene`, at the same parameters and supports); `outlier` (1 at nodes whose
 /// measurement was left out, where there are some); `reaction_force` at the

@@ -112,7 +112,8 @@ TEST_F(MaterialsCommand, EstimatesLawsOfLargeStrainsFromForces) {
   Succeed(
       "simulate block.vtu --material=neo_hookean --youngs=1e4 --nu=0.3 "
       "--out=m.vtu");
-  for (const std::string estimator : {"closed-form", "bounded"}) {
+  for (const std::string estimator :
+       {"closed-form", "bounded", "virtual-fields"}) {
     const std::string command =
         "estimate m.vtu --material=neo_hookean --estimator=" + estimator;
     const Json report = Succeed(command + " --json=- --out=out.vtu").Json();
@@ -120,10 +121,8 @@ TEST_F(MaterialsCommand, EstimatesLawsOfLargeStrainsFromForces) {
     EXPECT_NEAR(report["parameters"][1]["value"].get<double>(), 0.3, 1e-8);
     EXPECT_THAT(report["findings"].dump(), Not(HasSubstr("deformation")));
   }
-  for (const std::string estimator : {"virtual-fields", "reduced-fe"}) {
-    Refuse("estimate m.vtu --material=neo_hookean --estimator=" + estimator,
-           "the law neo_hookean is for large strains");
-  }
+  Refuse("estimate m.vtu --material=neo_hookean --estimator=reduced-fe",
+         "the law neo_hookean is for large strains");
   Refuse("simulate block.vtu --material=yeoh --youngs=1 --nu=0.3 --out=y.vtu",
          "the law yeoh of the scene has c10, c20, c30, bulk_modulus");
   Refuse("plan m.vtu --material=neo_hookean --youngs=1e4 --nu=0.3",

@@ -299,8 +299,10 @@ TEST_P(LargeStrainLaws, GiveTheSameAtManyPointsAsAtOne) {
   }
   std::vector<PointMatrices> columns(law_.NumModuli());
   PointTangents tangents;
-  law_.StressesAtPoints(gradients, kCount, columns.data());
-  law_.TangentsAtPoints(Moduli(), gradients, kCount, tangents);
+  law_.StressesAtPoints(gradients, GradientEntries::kAll, kCount,
+                        columns.data());
+  law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kAll, kCount,
+                        tangents);
   for (int p = 0; p < kCount; ++p) {
     const Eigen::Matrix3d h = LargeGradient(p);
     const Eigen::MatrixXd stresses = law_.Stresses(h, kAnySection);
@@ -310,6 +312,43 @@ TEST_P(LargeStrainLaws, GiveTheSameAtManyPointsAsAtOne) {
         EXPECT_NEAR(columns[k].row[i][p], stresses(i, k), 1e-12);
       }
       EXPECT_NEAR(tangents.row[TangentRow(i, 2)][p], tangent(2, i), 1e-11);
+    }
+  }
+}
+
+TEST_P(LargeStrainLaws, HaveInThePlaneWhatTheSolidHas) {
+  PointMatrices gradients = {};
+  constexpr int kCount = 61;
+  for (int p = 0; p < kCount; ++p) {
+    const Eigen::Matrix3d h = LargeGradient(p);
+    for (const int place : kPlacesOfPlane) {
+      gradients.row[place][p] = 0.3 * h(place);
+    }
+  }
+  std::vector<PointMatrices> stresses_of_plane(law_.NumModuli());
+  std::vector<PointMatrices> stresses_of_solid(law_.NumModuli());
+  law_.StressesAtPoints(gradients, GradientEntries::kOfPlane, kCount,
+                        stresses_of_plane.data());
+  law_.StressesAtPoints(gradients, GradientEntries::kAll, kCount,
+                        stresses_of_solid.data());
+  PointTangents of_plane;
+  PointTangents of_solid;
+  law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kOfPlane, kCount,
+                        of_plane);
+  law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kAll, kCount,
+                        of_solid);
+  for (const int a : kPlacesOfPlane) {
+    for (int p = 0; p < kCount; ++p) {
+      for (int k = 0; k < law_.NumModuli(); ++k) {
+        EXPECT_NEAR(stresses_of_plane[k].row[a][p],
+                    stresses_of_solid[k].row[a][p], 1e-12);
+      }
+    }
+    for (const int b : kPlacesOfPlane) {
+      for (int p = 0; p < kCount; ++p) {
+        EXPECT_NEAR(of_plane.row[TangentRow(a, b)][p],
+                    of_solid.row[TangentRow(a, b)][p], 1e-11);
+      }
     }
   }
 }
@@ -333,12 +372,14 @@ class NotObjective : public OwnModuliLaw<LargeStrainLaw> {
                            SectionModel /*model*/) const override {
     return Eigen::VectorXd::Constant(1, gradient.squaredNorm() / 2);
   }
-  void StressesAtPoints(const PointMatrices& gradients, int /*count*/,
+  void StressesAtPoints(const PointMatrices& gradients,
+                        GradientEntries /*entries*/, int /*count*/,
                         PointMatrices* columns) const override {
     columns[0] = gradients;
   }
   void TangentsAtPoints(const Eigen::VectorXd& moduli,
-                        const PointMatrices& /*gradients*/, int /*count*/,
+                        const PointMatrices& /*gradients*/,
+                        GradientEntries /*entries*/, int /*count*/,
                         PointTangents& tangents) const override {
     tangents = {};
     for (int i = 0; i < 9; ++i) {

@@ -1,5 +1,5 @@
-// Tests of closed-form and bounded for laws of large strains, on bars that were
-// bent by LargeStrainEquilibrium.
+// Tests of closed-form, bounded and virtual-fields for laws of large strains,
+// on bars that were bent by LargeStrainEquilibrium.
 
 #include <gtest/gtest.h>
 
@@ -153,6 +153,13 @@ TEST_P(LargeStrainsOfForces, AreExactWhereABarIsBentBy80Degrees) {
     EXPECT_FALSE(estimate.Has(FindingCode::kLargeDeformation));
     EXPECT_GT(estimate.deformation.rotation, 0.3);
   }
+  const auto virtual_fields = MakeEstimator("virtual-fields");
+  if (kind.model == SectionModel::kPlaneStress) {
+    EXPECT_THROWS_WITH(virtual_fields->Run(scene, {}),
+                       "not linear in the moduli");
+  } else {
+    ExpectValues(virtual_fields->Run(scene, {}), parameters, 1e-8);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LargeStrainsOfForces,
@@ -200,9 +207,34 @@ TEST(LargeStrainForceBalance, IsExactUnderPressureThatFollowsTheSurface) {
   scene.load_cases[0].noise_sd = 1e-3;
   scene.load_cases[1].noise_sd = 1e-4;
   MeasureBent(parameters, scene);
-  const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
-  ExpectValues(estimate, parameters, 1e-8);
-  EXPECT_LT(estimate.force_residual.value(), 1e-8);
+  for (const std::string name : {"closed-form", "virtual-fields"}) {
+    const Estimate estimate = MakeEstimator(name)->Run(scene, {});
+    ExpectValues(estimate, parameters, 1e-8);
+    EXPECT_LT(estimate.force_residual.value(), 1e-8);
+  }
+}
+
+// The spread over draws of noise is what the standard errors say.
+TEST(LargeStrainVirtualFields, KnowTheirErrors) {
+  constexpr int kDraws = 40;
+  const Eigen::Vector2d parameters(2000, 0.3);
+  Scene exact = BarOnArc(kHexahedra, "neo_hookean");
+  MeasureBent(parameters, exact);
+  Eigen::Array2d square_sum = Eigen::Array2d::Zero();
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Scene scene = exact;
+    testing::AddNoise(1e-3, unsigned(draw), scene);
+    const Estimate estimate = MakeEstimator("virtual-fields")->Run(scene, {});
+    ASSERT_TRUE(estimate.parameters[0].standard_error) << estimate.message;
+    for (int i = 0; i < 2; ++i) {
+      const ParameterEstimate& parameter = estimate.parameters[i];
+      square_sum(i) += std::pow(
+          (parameter.value - parameters(i)) / *parameter.standard_error, 2);
+    }
+  }
+  // The standard deviation of the mean square is sqrt(2 / 40) = 0.22.
+  EXPECT_NEAR(square_sum(0) / kDraws, 1, 0.67);
+  EXPECT_NEAR(square_sum(1) / kDraws, 1, 0.67);
 }
 
 // Gives the lower half of a bar region 1, and the upper half region 2.
@@ -494,10 +526,10 @@ TEST(LargeStrainForceBalance, RefusesLawsOfBothKindsInOneScene) {
                      "give all materials laws of large strains");
 }
 
-TEST(LargeStrainForceBalance, IsNotForVirtualFields) {
+TEST(LargeStrainForceBalance, IsNotForReducedFe) {
   Scene scene = BarOnArc(kHexahedra, "corotated");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
-  EXPECT_THROWS_WITH(MakeEstimator("virtual-fields")->Run(scene, {}),
+  EXPECT_THROWS_WITH(MakeEstimator("reduced-fe")->Run(scene, {}),
                      "law corotated is for large strains.*iterative-fe");
 }
 

@@ -58,6 +58,7 @@ std::vector<Finding> OfResiduals() {
           FramesAlike(kLong),
           ResultantsContradicted(kLong),
           InvertedElements(100000, 1000000, kLong),
+          RigidFaceTurned(100000, kLong),
           FramesLeftOut(99999, 100000),
           TrendOverFrames("nu of region 1000", false,
                           {true, numbers, numbers, numbers}, 0),

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 
@@ -67,6 +68,19 @@ TEST(KinematicError, OfSmallStrainsIsNotMentioned) {
   EXPECT_NEAR(estimate.deformation.strain, 0.005, 1e-4);
 }
 
+// One point that is far off would otherwise make strains of some per cent.
+TEST(KinematicError, OfSmallStrainsIsNotMadeByAGrossError) {
+  Scene scene = NeoHookeanCube(0.005);
+  testing::AddNoise(1e-3, 1, scene);
+  for (const double error : {0.1, 1.0}) {
+    Scene wrong = scene;
+    wrong.load_cases[0].displacement(2, scene.mesh.NumNodes() - 6) += error;
+    const Estimate estimate = EstimateOf(wrong, "auto");
+    EXPECT_FALSE(estimate.Has(FindingCode::kLargeDeformation)) << error;
+    EXPECT_TRUE(estimate.large_strain_law.empty()) << error;
+  }
+}
+
 TEST(KinematicError, OfModerateStrainsIsPartOfTheErrors) {
   for (const std::string estimator :
        {"closed-form", "virtual-fields", "reduced-fe", "iterative-fe"}) {
@@ -130,6 +144,36 @@ TEST(NegativePoissonRatio, AsksForSigns) {
     ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
     EXPECT_EQ(estimate.Has(FindingCode::kNegativePoissonRatio), is_flipped);
   }
+}
+
+// A cube whose top turned as a rigid face about y, and may have slid along y.
+bool IsWarnedOf(double angle, const std::string& law, bool may_slide) {
+  Scene scene = NeoHookeanCube(0.1);
+  scene.materials.resize(1);
+  scene.materials[0].law = law;
+  RigidFace top = {{},
+                   Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(3, true)};
+  top.components(1) = !may_slide;
+  for (int node = 0; node < scene.mesh.NumNodes(); ++node) {
+    if (scene.mesh.nodes(2, node) > 1 - 1e-9) {
+      top.nodes.push_back(node);
+    }
+  }
+  scene.supports.rigid_faces = {top};
+  Estimate estimate;
+  const Eigen::AngleAxisd turn(angle, Eigen::Vector3d::UnitY());
+  estimate.fitted_displacement =
+      (turn.toRotationMatrix() * scene.mesh.nodes - scene.mesh.nodes)
+          .reshaped();
+  JudgeRigidFaces(scene, estimate);
+  return estimate.Has(FindingCode::kRigidFaceTurned);
+}
+
+TEST(RigidFaceTurned, IsSaidOfFacesThatTurnByLinearModes) {
+  EXPECT_TRUE(IsWarnedOf(0.1, "neo_hookean", true));
+  EXPECT_FALSE(IsWarnedOf(0.03, "neo_hookean", true));
+  EXPECT_FALSE(IsWarnedOf(0.1, "neo_hookean", false));
+  EXPECT_FALSE(IsWarnedOf(0.1, "isotropic", true));
 }
 
 }  // namespace

@@ -350,6 +350,23 @@ TEST_P(IterativeFeOfKinds, FindsTheMaterialBelowAGripThatTurned) {
   ExpectBarParameters(FitBar(GrippedBar(GetParam())), kBentTruth, 1e-7);
 }
 
+// Bending hardly depends on Poisson's ratio, of which noise leaves nothing.
+// That is said of the law of large strains, and not that small strains leave
+// a residual.
+TEST(IterativeFeOfLargeStrains,
+     TellsAutoWhyItsEstimateOfComputedDataIsRefused) {
+  Scene scene = Cantilever({ElementKind::kHex8, SectionModel::kSolid},
+                           "neo_hookean", 1.5);
+  MeasureBar(kBentTruth, scene);
+  AddNoiseOfBar(0.05, 1, scene);
+  scene.materials[0].law = "isotropic";
+  scene.origin = Origin::kComputed;
+  const Estimate estimate = MakeEstimator("auto")->Run(scene, {});
+  EXPECT_TRUE(estimate.Has(FindingCode::kParametersUndetermined))
+      << estimate.message;
+  EXPECT_FALSE(estimate.large_strain_law.empty());
+}
+
 // The root mean square of errors over stated ones, of E and of nu.
 template <class MakeScene>
 Eigen::Vector2d ErrorsOverStated(const MakeScene& make_scene) {

@@ -165,6 +165,55 @@ TEST_P(UnknownMotionOfKinds, OfTheCameraLeavesExactDataExact) {
   ExpectTruth(RunIterativeFe(scene), 1e-8);
 }
 
+// Turns the camera by a finite rotation in each load case.
+void TurnCameraBy(double angle, Scene& scene) {
+  const int dimension = scene.mesh.Dimension();
+  const Eigen::MatrixXd& nodes = scene.mesh.nodes;
+  for (LoadCase& load_case : scene.load_cases) {
+    Eigen::VectorXd motion =
+        Eigen::VectorXd::Constant(NumRigidMotions(dimension), 0.02);
+    motion.tail(dimension == 2 ? 1 : 3) *= angle / 0.02 / (dimension - 1);
+    load_case.displacement =
+        MovedRigidly(nodes + load_case.displacement, motion) - nodes;
+  }
+  scene.is_rigid_motion_free = true;
+}
+
+Scene SeenByACamera(const KindOfSection& kind, double angle) {
+  Scene scene = testing::SceneOfKind(kind, 3);
+  for (LoadCase& load_case : scene.load_cases) {
+    load_case.loads = {
+        BodyForce{Eigen::VectorXd::LinSpaced(scene.mesh.Dimension(), -2, 3)}};
+  }
+  testing::MeasureByTextbook(kTruth, scene);
+  TurnCameraBy(angle, scene);
+  return scene;
+}
+
+TEST_P(UnknownMotionOfKinds, OfACameraThatTurnedFarLeavesExactDataExact) {
+  for (const double angle : {0.1, 0.5236, 2.0}) {
+    SCOPED_TRACE(angle);
+    ExpectTruth(RunIterativeFe(SeenByACamera(GetParam(), angle)), 1e-6);
+  }
+}
+
+TEST_P(UnknownMotionOfKinds,
+       OfACameraThatMissesComponentsLeavesExactDataExact) {
+  Scene scene = SeenByACamera(GetParam(), 0.5236);
+  const int dimension = scene.mesh.Dimension();
+  for (LoadCase& load_case : scene.load_cases) {
+    load_case.observed.setConstant(dimension, scene.mesh.NumNodes(), true);
+    load_case.observed(0, scene.mesh.NumNodes() - 1) = false;
+  }
+  ExpectTruth(RunIterativeFe(scene), 1e-6);
+  if (dimension == 3) {
+    for (LoadCase& load_case : scene.load_cases) {
+      load_case.observed.row(2).setConstant(false);
+    }
+    ExpectTruth(RunIterativeFe(scene), 1e-6);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, UnknownMotionOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
                          testing::KindTestName);

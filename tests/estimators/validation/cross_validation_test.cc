@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include "elastimate/core/equilibrium/large_strain_equilibrium.h"
@@ -102,6 +103,45 @@ TEST(CrossValidationStatistics, AreCalibratedUnderUnknownMotion) {
   Scene scene = ComputedColumn();
   scene.is_rigid_motion_free = true;
   EXPECT_NEAR(MeanChiSquare(scene, true), 1, 0.12);
+}
+
+// Turns the camera by a finite rotation.
+Scene SeenByATurnedCamera(Scene scene) {
+  const Eigen::MatrixXd& nodes = scene.mesh.nodes;
+  for (LoadCase& load_case : scene.load_cases) {
+    load_case.displacement =
+        MovedRigidly(nodes + load_case.displacement,
+                     (Eigen::VectorXd(6) << 0.1, 0.2, -0.1, 0.05, 0.3, -0.1)
+                         .finished()) -
+        nodes;
+  }
+  scene.is_rigid_motion_free = true;
+  return scene;
+}
+
+TEST(CrossValidationStatistics, AreCalibratedUnderACameraThatTurned) {
+  // A computed column of small strains, of 4e-3.
+  Scene scene = ComputedColumn();
+  testing::Measure({2500, 0.3}, scene);
+  EXPECT_NEAR(MeanChiSquare(SeenByATurnedCamera(scene), true), 1, 0.12);
+}
+
+TEST(CrossValidation, PredictsWhatACameraMeasuredThatTurned) {
+  Scene scene = testing::ShearedBlock();
+  scene.origin = Origin::kMeasured;
+  scene.load_cases[0].displacement /= 10;
+  std::get<NodalForces>(scene.load_cases[0].loads[0]).force /= 10;
+  scene = SeenByATurnedCamera(scene);
+  constexpr double kNoise = 1e-5;
+  scene.load_cases[0].noise_sd = kNoise;
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0, kNoise);
+  for (double& value : scene.load_cases[0].displacement.reshaped()) {
+    value += normal(generator);
+  }
+  const CrossValidation validation = Validate(scene);
+  EXPECT_TRUE(validation.IsComplete());
+  EXPECT_NEAR(validation.Total().ErrorRatio(), 1, 0.25);
 }
 
 TEST(CrossValidation, TellsAModelThatIsTooSimple) {
