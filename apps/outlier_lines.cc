@@ -60,6 +60,7 @@ std::vector<std::string> OutlierLines(const std::vector<Outlier>& outliers,
     }
   }
   std::vector<std::string> sentences;
+  sentences.reserve(lines_of_files.size() + 1);
   for (const auto& [file, lines] : lines_of_files) {
     sentences.push_back(SentenceOf(file, lines, "on line", "on the lines"));
   }

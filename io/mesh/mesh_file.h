@@ -91,6 +91,9 @@ struct MeshFile {
   std::vector<std::size_t> node_lines;
 
   bool is_vtk = true;
+  /// Whether the elements are simplices that the cells of the file were cut
+  /// into.
+  bool is_cut = false;
   /// The program whose sets the groups are ("Abaqus"): their names may be
   /// written in letters of any case, and a set of nodes goes before one of
   /// elements with the same name.  Empty for VTK and Gmsh.
@@ -100,9 +103,6 @@ struct MeshFile {
   /// from.  It counts cells from 0 in a VTK file, and is empty where nothing
   /// was cut there.
   std::vector<std::size_t> element_numbers;
-  /// Whether the elements are simplices that the cells of the file were cut
-  /// into.
-  bool is_cut = false;
   /// The last of the nodes, which are not in the file.
   std::vector<AddedNode> added;
   /// Sentences for people about what is read in another way than it is written.

@@ -108,7 +108,7 @@ TEST(Folds, RefuseWhatCannotBeDivided) {
   EXPECT_THROWS_WITH(DivideMeasurement(scene, HeldOutPart::kPoints, 1),
                      "2 parts or more");
   EXPECT_THROWS_WITH(DivideMeasurement(scene, HeldOutPart::kPoints, 1000),
-                     "54 measured points cannot be divided");
+                     "54 points, which cannot be divided");
   EXPECT_THROWS_WITH(DivideMeasurement(scene, HeldOutPart::kLoadCases, 2),
                      "one load case");
   scene = testing::WithThreeForces(scene);
