@@ -18,10 +18,11 @@ namespace elastimate {
 SceneReading ReadMeasuredScene(const std::vector<std::string>& arguments) {
   SceneReading reading =
       ReadWithGapsChosen([&arguments](const std::vector<bool>& is_filled) {
-        return ReadScene(
-            {arguments.begin(), arguments.end()}, Measurement::kRequired,
-            {SectionFromFlags(), RegionsFromFlag(),
-             ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(), is_filled});
+        return ReadScene({arguments.begin(), arguments.end()},
+                         Measurement::kRequired,
+                         {SectionFromFlags(), RegionsFromFlag(),
+                          ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(),
+                          FieldFromFlag(), is_filled});
       });
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {

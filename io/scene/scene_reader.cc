@@ -447,6 +447,9 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   }
   ChooseMaterials(path, mesh, choices.regions, scene, notices);
   ChooseLaw(path, choices.law, scene);
+  if (!choices.field.empty()) {
+    GiveField(choices.field, scene.materials);
+  }
   try {
     ValidateScene(scene);
   } catch (const std::invalid_argument& error) {
