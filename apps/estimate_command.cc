@@ -95,14 +95,7 @@ EstimatorOptions CheckFlags(const std::vector<std::string>& arguments,
   if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
     throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
   }
-  if (IsGiven("map") && FLAGS_map != "youngs_modulus") {
-    throw std::invalid_argument(AsGiven("map") + "; it must be youngs_modulus");
-  }
-  if (IsGiven("map") && (ChoosesLaw() || MergesRegions())) {
-    throw std::invalid_argument(
-        "--map is for one isotropic material; leave out --material=auto and "
-        "--regions=merge");
-  }
+  static_cast<void>(FieldFromFlag());
   ApplyComputingFlags();
   CheckOutputFlags(arguments, formats);
   return options;
@@ -338,9 +331,6 @@ int Run(const std::vector<std::string>& arguments, const Page* page) {
   SceneReading reading = ReadMeasuredScene(arguments);
   if (ChoosesLaw()) {
     CheckLawChoice(reading, options);
-  }
-  if (!FLAGS_map.empty()) {
-    GiveField(FLAGS_map, reading.scene.materials);
   }
   GiveKnownPoissonRatio(reading.scene, options);
   if (MergesRegions()) {

@@ -225,6 +225,7 @@ Command ThePlanCommand() {
              {"material"},
              {"axis"},
              {"regions"},
+             {"map"},
              {"model"},
              {"thickness"},
              {"order"},

@@ -7,6 +7,7 @@
 
 #include "apps/flags.h"
 #include "apps/number_list.h"
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/orthotropic_law.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
@@ -63,6 +64,24 @@ LawChoice AxesOfLawsToChoose() {
                      : std::string_view(TransverselyIsotropicLaw::kName);
   }
   return choice;
+}
+
+std::string FieldFromFlag() {
+  if (!IsGiven("map")) {
+    return "";
+  }
+  if (FLAGS_map != "youngs_modulus") {
+    throw std::invalid_argument(AsGiven("map") + "; it must be youngs_modulus");
+  }
+  const bool is_other_law =
+      IsGiven("material") && FLAGS_material != IsotropicLaw::kName;
+  const bool has_regions = IsGiven("regions") && FLAGS_regions != "one";
+  if (is_other_law || has_regions) {
+    throw std::invalid_argument(
+        "--map is for one isotropic material; leave out " +
+        AsGiven(is_other_law ? "material" : "regions"));
+  }
+  return FLAGS_map;
 }
 
 }  // namespace elastimate

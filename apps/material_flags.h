@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_APPS_MATERIAL_FLAGS_H_
 #define ELASTIMATE_APPS_MATERIAL_FLAGS_H_
 
+#include <string>
+
 #include "elastimate/io/scene/scene_reader.h"
 
 namespace elastimate {
@@ -15,6 +17,11 @@ bool ChoosesLaw();
 /// Returns the axes that --axis gives for --material=auto; they are for laws
 /// that take as many.
 LawChoice AxesOfLawsToChoose();
+
+/// Returns the parameter of which --map asks for a map; empty where it asks for
+/// none.  Throws std::invalid_argument for another one than Young's modulus,
+/// and beside flags that ask for other materials.
+std::string FieldFromFlag();
 
 }  // namespace elastimate
 

@@ -20,6 +20,7 @@
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "elastimate/estimators/plan/load_plan.h"
+#include "elastimate/estimators/plan/map_plan.h"
 #include "elastimate/estimators/plan/unit_loads.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/report/plan_report.h"
@@ -240,20 +241,66 @@ void AddUnitLoads(const std::string& source, SplitCases& split,
   }
 }
 
-LoadPlan MakePlan(const std::string& source, SolverKind solver,
-                  SplitCases& split, PlanBasis& basis,
-                  std::vector<std::string>& notices) {
+// Enters the noise and the candidates, once the parameters are there.
+void EnterCandidates(const std::string& source, SplitCases& split,
+                     PlanBasis& basis, std::vector<std::string>& notices) {
+  if (!basis.is_scale_known) {
+    LeaveNoiseOut(split, notices);
+  }
+  CompleteCandidates(split);
+  AddUnitLoads(source, split, basis);
+  basis.noise_sd = split.before.load_cases[0].noise_sd;
+}
+
+// A plan, and what is written of it.
+struct PlanOutput {
+  std::string report;
+  std::string summary;
+  bool is_enough;  ///< Whether the loads determine what is asked for.
+};
+
+PlanOutput MakeLoadPlan(const std::string& source, SolverKind solver,
+                        SplitCases& split, PlanBasis& basis,
+                        std::vector<std::string>& notices) {
+  const Eigen::VectorXd parameters =
+      ChooseParameters(solver, split.before, basis);
+  EnterCandidates(source, split, basis, notices);
+  const LoadPlan plan = PlanLoads(split.before, split.candidates, parameters,
+                                  basis.relative_noise, solver);
+  return {
+      JsonPlan(plan, basis, split.candidates, notices),
+      PlanSummary(plan, basis, split.candidates),
+      plan.AreDetermined(plan.sequence.empty() ? plan.before
+                                               : plan.sequence.back().errors)};
+}
+
+// A fit of one material would take structure for noise, so that a plan of a map
+// asks it for the size of the moduli alone.
+PlanOutput MakeMapPlan(const std::string& source, SolverKind solver,
+                       SplitCases& split, PlanBasis& basis,
+                       std::vector<std::string>& notices) {
+  split.before.materials.clear();
+  const bool are_given = AreParametersGiven();
+  basis.parameters = are_given ? "given" : "typical";
+  basis.is_scale_known = are_given || basis.is_measured;
+  const Eigen::Vector2d parameters =
+      are_given ? ParametersFromFlags(split.before)
+                : TypicalParameters(split.before, solver);
+  EnterCandidates(source, split, basis, notices);
+  const MapPlan plan =
+      PlanMap(split.before, split.candidates, {parameters(0), parameters(1)},
+              basis.relative_noise, solver);
+  return {JsonMapPlan(plan, basis, split.candidates, notices),
+          MapPlanSummary(plan, basis, split.candidates), true};
+}
+
+PlanOutput MakePlan(const std::string& source, SolverKind solver,
+                    SplitCases& split, PlanBasis& basis,
+                    std::vector<std::string>& notices) {
   try {
-    const Eigen::VectorXd parameters =
-        ChooseParameters(solver, split.before, basis);
-    if (!basis.is_scale_known) {
-      LeaveNoiseOut(split, notices);
-    }
-    CompleteCandidates(split);
-    AddUnitLoads(source, split, basis);
-    basis.noise_sd = split.before.load_cases[0].noise_sd;
-    return PlanLoads(split.before, split.candidates, parameters,
-                     basis.relative_noise, solver);
+    return HasFields(split.before.materials)
+               ? MakeMapPlan(source, solver, split, basis, notices)
+               : MakeLoadPlan(source, solver, split, basis, notices);
   } catch (const std::exception& error) {
     const std::string sentence = error.what();
     const bool is_named =
@@ -269,9 +316,9 @@ int RunPlan(const std::vector<std::string>& arguments) {
   const SolverKind solver = SolverFromFlag();
   const std::string source = PrintablePath(arguments[0]);
   std::optional<Progress> progress("reading " + source);
-  SceneReading reading =
-      ReadScene({arguments[0]}, Measurement::kOptional,
-                {SectionFromFlags(), RegionsFromFlag(), LawFromFlags(), {}});
+  SceneReading reading = ReadScene(
+      {arguments[0]}, Measurement::kOptional,
+      {SectionFromFlags(), RegionsFromFlag(), LawFromFlags(), FieldFromFlag()});
   if (reading.frames) {
     throw std::invalid_argument(source +
                                 ": plan cannot be used with a scene of several "
@@ -288,22 +335,17 @@ int RunPlan(const std::vector<std::string>& arguments) {
   PlanBasis basis = {};
   basis.relative_noise = IsGiven("noise") ? FLAGS_noise : kUsualNoise;
   SplitCases split = Split(quadratic ? *quadratic : reading.scene, basis);
-  const LoadPlan plan = MakePlan(source, solver, split, basis, reading.notices);
+  const PlanOutput plan =
+      MakePlan(source, solver, split, basis, reading.notices);
   progress.reset();
   StagedFiles files;
-  const std::string report =
-      JsonPlan(plan, basis, split.candidates, reading.notices);
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
-    files.Add(FLAGS_json, report);
+    files.Add(FLAGS_json, plan.report);
   }
-  WriteStandardOutput(
-      FLAGS_json == "-" ? report : PlanSummary(plan, basis, split.candidates));
+  WriteStandardOutput(FLAGS_json == "-" ? plan.report : plan.summary);
   files.Commit();
   PrintNotices(reading.notices);
-  return plan.AreDetermined(plan.sequence.empty() ? plan.before
-                                                  : plan.sequence.back().errors)
-             ? 0
-             : 1;
+  return plan.is_enough ? 0 : 1;
 }
 
 }  // namespace elastimate

@@ -85,19 +85,30 @@ std::string LoadCasesText(const PlanBasis& basis) {
   return text + (basis.is_measured ? "" : ", as if it were measured");
 }
 
+std::string NoiseText(const PlanBasis& basis) {
+  return basis.noise_sd ? "standard deviation " + NumberText(*basis.noise_sd, 3)
+                        : PercentOf(basis.relative_noise,
+                                    "the rms displacement of each load case");
+}
+
+std::string SizeText(std::size_t place, const std::optional<double>& factor,
+                     const PlanBasis& basis,
+                     const std::vector<CandidateLoad>& candidates) {
+  return candidates[place].is_free_in_size && basis.is_scale_known && factor
+             ? ", of about " + NumberText(*factor, 2)
+             : "";
+}
+
 }  // namespace
 
 std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
                         const std::vector<CandidateLoad>& candidates) {
   const std::vector<ParameterEstimate> free = plan.Free();
-  std::string text =
-      Padded("before", kWidthOfName) + LoadCasesText(basis) + "\n" +
-      Padded("parameters", kWidthOfName) + ParametersText(plan, basis) + "\n" +
-      Padded("noise", kWidthOfName) +
-      (basis.noise_sd ? "standard deviation " + NumberText(*basis.noise_sd, 3)
-                      : PercentOf(basis.relative_noise,
-                                  "the rms displacement of each load case")) +
-      "\n\n" + Heading(free) + Row("before", plan.before, free) + "\n";
+  std::string text = Padded("before", kWidthOfName) + LoadCasesText(basis) +
+                     "\n" + Padded("parameters", kWidthOfName) +
+                     ParametersText(plan, basis) + "\n" +
+                     Padded("noise", kWidthOfName) + NoiseText(basis) + "\n\n" +
+                     Heading(free) + Row("before", plan.before, free) + "\n";
   for (const PlannedLoad& load : plan.loads) {
     text += Row("+ " + candidates[load.candidate].name, load.errors, free) +
             (load.factor ? "\n" : " (moves nothing that is observed)\n");
@@ -105,12 +116,9 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
   text += "\n";
   for (std::size_t i = 0; i < plan.sequence.size(); ++i) {
     const PlannedLoad& load = plan.sequence[i];
-    const CandidateLoad& candidate = candidates[load.candidate];
-    text +=
-        Padded(i == 0 ? "measure next" : "then", kWidthOfName) + candidate.name;
-    if (candidate.is_free_in_size && basis.is_scale_known && load.factor) {
-      text += ", of about " + NumberText(*load.factor, 2);
-    }
+    text += Padded(i == 0 ? "measure next" : "then", kWidthOfName) +
+            candidates[load.candidate].name +
+            SizeText(load.candidate, load.factor, basis, candidates);
     text += i == 0 ? "\n"
                    : ", which leaves an error of " +
                          WorstText(load.errors, free) + "\n";
@@ -124,6 +132,25 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
             "; observe more points, or load another surface (--surface)\n";
   }
   return text;
+}
+
+std::string MapPlanSummary(const MapPlan& plan, const PlanBasis& basis,
+                           const std::vector<CandidateLoad>& candidates) {
+  std::string text = Padded("before", kWidthOfName) + LoadCasesText(basis) +
+                     "\n" + Padded("noise", kWidthOfName) + NoiseText(basis) +
+                     "\n\n" + Padded("load", kWidthOfName) +
+                     "parameters of the map that the data support\n" +
+                     Padded("before", kWidthOfName) +
+                     NumberText(plan.supported_before, 3) + "\n";
+  for (const PlannedMapLoad& load : plan.loads) {
+    text += Padded("+ " + candidates[load.candidate].name, kWidthOfName) +
+            NumberText(load.supported_parameters, 3) +
+            (load.factor ? "\n" : " (moves nothing that is observed)\n");
+  }
+  const PlannedMapLoad& best = plan.loads.front();
+  return text + "\n" + Padded("measure next", kWidthOfName) +
+         candidates[best.candidate].name +
+         SizeText(best.candidate, best.factor, basis, candidates) + "\n";
 }
 
 }  // namespace elastimate

@@ -13,6 +13,10 @@ namespace elastimate {
 std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
                         const std::vector<CandidateLoad>& candidates);
 
+/// The table of a plan of a map.
+std::string MapPlanSummary(const MapPlan& plan, const PlanBasis& basis,
+                           const std::vector<CandidateLoad>& candidates);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_APPS_PLAN_SUMMARY_H_

@@ -300,7 +300,7 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   std::optional<Progress> progress("reading " + source);
   SceneReading reading =
       ReadScene({arguments[0]}, Measurement::kOptional,
-                {SectionFromFlags(), RegionsFromFlag(), LawFromFlags(), {}});
+                {SectionFromFlags(), RegionsFromFlag(), LawFromFlags()});
   Scene& scene = reading.scene;
   errors.rigid_motion = RigidMotionFromFlag(scene.mesh.Dimension());
 

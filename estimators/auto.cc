@@ -132,6 +132,12 @@ class Ladder {
   Estimate& Last() { return estimate_; }
 
   Estimate Finish() {
+    for (Finding& finding : estimate_.findings) {
+      finding = WithoutAdviceOfAuto(finding);
+      if (finding.severity == Severity::kError) {
+        estimate_.message = Sentence(finding);
+      }
+    }
     estimate_.work = work_;
     estimate_.stages = stages_;
     estimate_.rungs = rungs_;
@@ -188,7 +194,7 @@ bool ClimbLargeStrainLaws(const Scene& scene, const EstimatorOptions& options,
 // which fits of small strains name.
 bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
                        Ladder& ladder) {
-  if (!AsksForLargeStrains(scene, options) ||
+  if (HasFields(scene.materials) || !AsksForLargeStrains(scene, options) ||
       !ClimbLargeStrainLaws(scene, options, ladder)) {
     return false;
   }
@@ -307,7 +313,7 @@ Estimate Auto::DoRun(const Scene& scene,
   ClimbFits(scene, options, nullptr, ladder);
   ClimbComputedLargeStrains(scene, options, ladder);
   // Where small strains do not do, it matters why large ones did not either.
-  if (!of_large_strains.findings.empty() &&
+  if (!of_large_strains.Has(FindingCode::kNotRun) &&
       ladder.Last().IsRefusedFor(FindingCode::kLargeDeformation)) {
     ladder.Decide("not taken: the strains are too large for it");
     ladder.Last() = of_large_strains;

@@ -284,10 +284,12 @@ void ValidateFields(const Law& law, const Material& material,
   for (const std::string& field : material.fields) {
     if (FindParameter(law, field, name).name != "youngs_modulus" ||
         law.Name() != IsotropicLaw::kName || material.fields.size() > 1) {
-      throw std::invalid_argument(name + " has " + field +
-                                  " as a field, but only youngs_modulus of the "
-                                  "law isotropic may differ "
-                                  "between elements; correct \"fields\"");
+      throw std::invalid_argument(
+          name + " has " + field +
+          " as a field, but only youngs_modulus of the "
+          "law isotropic may differ "
+          "between elements; give that law, or leave out "
+          "\"fields\" and --map");
     }
   }
 }

@@ -26,6 +26,7 @@ constexpr char kGiveMoreOfMaterials[] =
     "add load cases";
 constexpr char kUseALoss[] = "use --loss=huber or --loss=cauchy";
 constexpr char kKeepRegionsApart[] = "use --regions=each";
+constexpr char kUseAuto[] = "use --estimator=auto, or ";
 constexpr char kErrorsHold[] = ", which the error bars include";
 
 // The rate d ln M / d nu along the direction that the data leave free, below
@@ -184,7 +185,7 @@ Finding NoConvergence(int max_iterations) {
   return Error(FindingCode::kNoConvergence,
                "the fit did not converge in " +
                    Counted(std::size_t(max_iterations), "iteration"),
-               "use --estimator=auto, or give bounds on the parameters");
+               std::string(kUseAuto) + "give bounds on the parameters");
 }
 
 Finding FitNotCertified() {
@@ -212,7 +213,7 @@ Finding UnphysicalParameters(const std::vector<std::string>& parameters,
                      text +
                          ", which noise or coarse elements can cause with "
                          "this estimator",
-                     "use --estimator=auto, or give Poisson's ratio (--nu)")
+                     std::string(kUseAuto) + "give Poisson's ratio (--nu)")
              : Error(FindingCode::kUnphysical, text,
                      std::string(kCheckTheModel) + ", or give bounds");
 }
@@ -242,7 +243,7 @@ Finding PoissonRatioDivergesByNoise() {
   return Error(FindingCode::kUnphysical,
                "the data drive Poisson's ratio to the end of its range, which "
                "noise or coarse elements can cause with this estimator",
-               "use --estimator=auto, or give bounds (--nu_min, --nu_max)");
+               std::string(kUseAuto) + "give bounds (--nu_min, --nu_max)");
 }
 
 Finding LoadsDoNoWork() {
@@ -264,6 +265,12 @@ Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kParametersUndetermined,
                "the data do not determine " + FirstOf(parameters),
                kGiveMoreOfMaterials);
+}
+
+Finding ParametersOfOneUndetermined(
+    const std::vector<std::string>& parameters) {
+  return Error(FindingCode::kParametersUndetermined,
+               "the data do not determine " + FirstOf(parameters), kGiveMore);
 }
 
 Finding ParametersUndeterminedByElements(
@@ -753,12 +760,28 @@ Finding DiscretizationErrorFinding(const Estimate& estimate) {
 }
 
 Finding MeshErrorUnknown() {
+  return Warning(FindingCode::kMeshErrorUnknown,
+                 "this estimator does not know the error of the mesh, so the "
+                 "error bars include noise only",
+                 std::string(kUseAuto) +
+                     "give --origin=computed for simulated "
+                     "data");
+}
+
+Finding MeshErrorOfMapUnknown() {
   return Warning(
       FindingCode::kMeshErrorUnknown,
-      "this estimator does not know the error of the mesh, so the "
-      "error bars include noise only",
-      "use --estimator=auto, or give --origin=computed for simulated "
-      "data");
+      "the error of the mesh is not known, because its elements are quadratic "
+      "already, so the error bars include noise only",
+      "give linear elements, of which a map makes quadratic ones by itself, "
+      "or give --origin=computed for simulated data");
+}
+
+Finding WithoutAdviceOfAuto(Finding finding) {
+  if (finding.advice.rfind(kUseAuto, 0) == 0) {
+    finding.advice.erase(0, std::string(kUseAuto).size());
+  }
+  return finding;
 }
 
 Finding ComputedByLinearElements(Severity severity) {
@@ -804,13 +827,17 @@ Finding Misfit(double ratio) {
           "check --noise_sd, then the supports and the loads"};
 }
 
-Finding NotResolved(int region, double diameter) {
+Finding NotResolved(const std::vector<std::string>& regions,
+                    bool is_by_elements) {
+  const bool is_one = regions.size() == 1;
   return {FindingCode::kNotResolved, Severity::kWarning,
-          "region " + std::to_string(region) + " of the map, " +
-              TwoDigits(diameter) +
-              " wide, is narrower than three resolution lengths, so that its "
-              "contrast is a lower bound",
-          "reduce the noise, or add load cases"};
+          FirstOf(regions) + " of the map " + (is_one ? "is" : "are") +
+              " narrower than three resolution lengths, so that " +
+              (is_one ? "its modulus" : "their moduli") +
+              " may differ more from what is around",
+          is_by_elements ? "use a finer mesh"
+                         : "measure more points or with less noise, or add "
+                           "load cases"};
 }
 
 Finding NoiseNeeded(double num_rows, double supported_parameters) {
@@ -827,6 +854,15 @@ Finding MayBeTheMesh(double spread) {
           "the modulus varies by " + Percent(spread) +
               " only, which what the elements miss may cause",
           "use a finer mesh, and see whether the structure stays"};
+}
+
+Finding StructureWithinMeshError(double explained, double by_mesh) {
+  return {FindingCode::kMayBeTheMesh, Severity::kWarning,
+          "a modulus that varies would explain " + Percent(explained) +
+              " of the displacements, which is within what the elements may "
+              "miss (" +
+              Percent(by_mesh) + "), so that one is taken for all",
+          "use a finer mesh to see what varies less"};
 }
 
 Finding LocalMapNeedsExactData(double force_residual) {

@@ -47,6 +47,8 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
                        const Eigen::Vector2d& direction);
 /// `parameters` describes each, such as "E of region 3 (+- 45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
+/// E and nu are those of one isotropic material.
+Finding ParametersOfOneUndetermined(const std::vector<std::string>& parameters);
 /// Says so where most of the errors is what the elements miss.
 Finding ParametersUndeterminedByElements(
     const std::vector<std::string>& parameters);
@@ -169,6 +171,10 @@ Finding SupportsEndWithinElements(const ParameterErrors& errors,
 Finding DiscretizationErrorFinding(const Estimate& estimate);
 /// Measured displacements and a method that sees no mesh error.
 Finding MeshErrorUnknown();
+/// The elements of a map are quadratic already.
+Finding MeshErrorOfMapUnknown();
+/// Returns the finding without advice to use the estimator `auto`.
+Finding WithoutAdviceOfAuto(Finding finding);
 /// Displacements that are said to be measured, and are those of the elements.
 /// A warning where the errors include the difference from linear elements.
 Finding ComputedByLinearElements(Severity severity);
@@ -179,11 +185,17 @@ Finding SolverFallback(const std::string& notice);
 // What a map does not tell.
 /// The residual is `ratio` times as large as the given noise explains.
 Finding Misfit(double ratio);
-/// Region `region`, from 1 on, is narrower than the data resolve.
-Finding NotResolved(int region, double diameter);
+/// `regions` are narrower than what is resolved, because of the elements or of
+/// the measurement.
+Finding NotResolved(const std::vector<std::string>& regions,
+                    bool is_by_elements);
 Finding NoiseNeeded(double num_rows, double supported_parameters);
-/// `spread` is the standard deviation of ln E.
+/// `spread` is the standard deviation of ln E, where nothing tells what the
+/// elements miss.
 Finding MayBeTheMesh(double spread);
+/// Structure explains this part of the displacements, and what the elements may
+/// miss is at least as large.
+Finding StructureWithinMeshError(double explained, double by_mesh);
 /// `force_residual` is relative to the loads.
 Finding LocalMapNeedsExactData(double force_residual);
 Finding LocalMapUndetermined();

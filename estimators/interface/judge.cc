@@ -32,7 +32,9 @@ void JudgeMeshError(const Scene& scene, Estimate& estimate) {
   const bool is_known =
       estimate.error_budget.discretization.array().isFinite().any();
   if (scene.origin == Origin::kMeasured && !is_known) {
-    estimate.Add(MeshErrorUnknown());
+    estimate.Add(estimate.map && scene.mesh.Order() == 2
+                     ? MeshErrorOfMapUnknown()
+                     : MeshErrorUnknown());
   } else if (AreNotable(estimate.error_budget.discretization, estimate) &&
              !estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     estimate.Add(DiscretizationErrorFinding(estimate));

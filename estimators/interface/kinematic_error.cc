@@ -130,15 +130,19 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);
-  if (IsUnusable(error, IsARatioFree(estimate))) {
-    estimate.Fail(LargeDeformation(estimate.deformation, error.log_modulus,
-                                   Severity::kError,
-                                   scene.is_rigid_motion_free));
+  const bool is_unusable = IsUnusable(error, IsARatioFree(estimate));
+  Finding finding =
+      LargeDeformation(estimate.deformation, error.log_modulus,
+                       is_unusable ? Severity::kError : Severity::kWarning,
+                       scene.is_rigid_motion_free);
+  if (HasFields(scene.materials)) {
+    finding.advice = "apply smaller loads, because maps are of small strains";
+  }
+  if (is_unusable) {
+    estimate.Fail(finding);
     return;
   }
-  estimate.Add(LargeDeformation(estimate.deformation, error.log_modulus,
-                                Severity::kWarning,
-                                scene.is_rigid_motion_free));
+  estimate.Add(finding);
   if (estimate.IsUsable()) {
     AddError(error, estimate.error_budget.kinematics, estimate);
   }

@@ -32,8 +32,8 @@ struct MapRegion {
   /// The diameter of a disc or a ball as large as its largest connected part
   /// [length].
   double diameter;
-  /// Whether it is at least three resolution lengths wide.  The contrast of
-  /// another one is a lower bound.
+  /// Whether it is at least three resolution lengths wide.  What surrounds
+  /// another one has its part in its modulus.
   bool is_resolved;
 };
 
@@ -45,9 +45,9 @@ struct MapEstimate {
   std::vector<Finding> findings;
   MapVerdict verdict = MapVerdict::kHomogeneous;
   /// ln of the evidence of a smooth field and of regions, over that of a
-  /// homogeneous body.  Both below 3 mean that the body is homogeneous.  Not
-  /// numbers for MapVerdict::kElements, which has no standard errors,
-  /// resolution lengths and regions either.
+  /// homogeneous body, as if the elements missed nothing.  Both below 3 mean
+  /// that the body is homogeneous.  Not numbers for MapVerdict::kElements,
+  /// which has no standard errors, resolution lengths and regions either.
   double field_log_evidence = 0;
   double region_log_evidence = 0;
   /// gamma: how many parameters of the field the data support beside its level.
@@ -69,11 +69,16 @@ struct MapEstimate {
   /// are zero if it is known.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   /// The part of the covariance that comes from what the elements may miss;
-  /// zero where nothing is missed, and for a field, where it is not known.
+  /// zero where nothing is missed, or nothing known of that.
   Eigen::Matrix2d mesh_covariance = Eigen::Matrix2d::Zero();
   /// The standard deviation of the noise of a component, given or found
   /// [length].
   double noise_sd = 0;
+  /// |measured - model| / |measured| of the observed displacements.
+  double displacement_residual = 0;
+  /// The displacement of a scene of unknown motion
+  /// (Estimate::fitted_displacement); empty for other scenes.
+  Eigen::MatrixXd fitted_displacement;
   /// Whether loads or resultants tell the unit of E.  Displacements alone tell
   /// its ratios: the map is then for a homogeneous start of E = 1.
   bool is_scale_known = true;

@@ -162,6 +162,12 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
   return undetermined;
 }
 
+// Tells whether E and nu are all there is.
+bool IsOfElasticity(const std::vector<ParameterEstimate>& parameters) {
+  return parameters.size() == 2 && parameters[0].symbol == "E" &&
+         parameters[1].symbol == "nu";
+}
+
 Finding FindingOfUndetermined(const Estimate& estimate) {
   const std::vector<std::string> undetermined = Undetermined(estimate);
   if (AreAxesOnly(estimate)) {
@@ -182,6 +188,8 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
   }
   Finding finding = AreUndeterminedByElements(estimate)
                         ? ParametersUndeterminedByElements(undetermined)
+                    : IsOfElasticity(estimate.parameters)
+                        ? ParametersOfOneUndetermined(undetermined)
                         : ParametersUndetermined(undetermined);
   if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     finding.advice = "give the supports as boxes";
@@ -463,8 +471,7 @@ void JudgeGrownErrors(Estimate& estimate) {
 
 void EnterElasticity(Estimate& estimate) {
   const std::vector<ParameterEstimate>& parameters = estimate.parameters;
-  if (parameters.size() != 2 || parameters[0].symbol != "E" ||
-      parameters[1].symbol != "nu") {
+  if (!IsOfElasticity(parameters)) {
     return;
   }
   estimate.elasticity = {parameters[0].value, parameters[1].value};
@@ -479,10 +486,13 @@ void EnterElasticity(Estimate& estimate) {
 void EnterParametersOfElasticity(const Scene& scene,
                                  const EstimatorOptions& options,
                                  Estimate& estimate) {
+  // The fit may have taken other elements than those of the scene.
+  const int order = estimate.element_order;
   EnterParameters(scene, FreeParameters(scene, options),
                   Eigen::Vector2d(estimate.elasticity.youngs_modulus,
                                   estimate.elasticity.poisson_ratio),
                   estimate);
+  estimate.element_order = order;
   estimate.parameter_covariance = estimate.covariance;
 }
 

@@ -5,16 +5,19 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/maps/field_prior.h"
 #include "elastimate/estimators/maps/level_fit.h"
 #include "elastimate/estimators/maps/map_errors.h"
+#include "elastimate/estimators/maps/map_mesh_error.h"
 #include "elastimate/estimators/maps/map_problem.h"
 #include "elastimate/estimators/maps/region_map.h"
 #include "elastimate/estimators/maps/sharpen_map.h"
@@ -33,17 +36,14 @@ constexpr double kLeastRedundancy = 4;
 // from its mesh.
 constexpr double kOfTheMesh = 0.05;
 constexpr double kResolved = 3;
+// The part of an element's modulus that the data tell, V_e / l_e^d, from which
+// on smaller elements would show more.
+constexpr double kResolvedElements = 0.5;
 constexpr double kUsualPoissonRatio = 0.3;
 // How far the square sum may be from its mean, in standard deviations.
 constexpr double kMostMisfit = 5;
 // nu of maps was off by twice what the linearised model says.
 constexpr double kWideningOfPoissonRatio = 2;
-
-// What linear and then quadratic elements change, of which half is taken for
-// the error of the latter, and what their displacements change beside.
-constexpr double kOfMeshChange = 0.5;
-constexpr double kOfDisplacementChange = 0.03;
-constexpr double kLeastOfRatio = 0.2;
 
 // Returns the scene of one isotropic material.
 Scene OfOneMaterial(Scene scene) {
@@ -119,12 +119,14 @@ class MapBuilder {
   MapBuilder(const Scene& scene, const Scene* linear,
              const EstimatorOptions& options, bool trusts_noise)
       : scene_(scene),
-        linear_(linear),
-        solver_(options.solver),
         prior_(std::make_unique<FieldPrior>(scene.mesh)),
         model_(scene, options.solver),
         problem_{model_, options.known_poisson_ratio,
-                 trusts_noise ? GivenNoise() : std::nullopt} {}
+                 trusts_noise ? GivenNoise() : std::nullopt} {
+    if (linear != nullptr) {
+      mesh_error_.emplace(*linear, options.solver, problem_);
+    }
+  }
 
   MapEstimate Build(const std::optional<double>& start) {
     map_.element_order = scene_.mesh.Order();
@@ -137,6 +139,7 @@ class MapBuilder {
     if (!homogeneous) {
       return Failed(SingularStiffness());
     }
+    of_mesh_ = mesh_error_ ? mesh_error_->SquareSum(*homogeneous) : 0;
     const SmoothMap smooth = FitSmooth(*homogeneous);
     const MapState sharpened = SharpenMap(problem_, *prior_, smooth);
     const std::optional<RegionMap> regions =
@@ -150,15 +153,25 @@ class MapBuilder {
         is_supported
             ? ResolutionLengths(*prior_, smooth)
             : Eigen::VectorXd::Constant(prior_->NumElements(), prior_->Size());
+    const bool are_regions =
+        regions && map_.region_log_evidence >= map_.field_log_evidence;
     const double best =
-        std::max(map_.field_log_evidence, map_.region_log_evidence);
-    if (best < kLeastEvidence) {
+        are_regions ? map_.region_log_evidence : map_.field_log_evidence;
+    const double explained =
+        homogeneous->square_sum -
+        (are_regions ? regions->fit.square_sum : smooth.square_sum);
+    const bool is_of_mesh = best >= kLeastEvidence && explained <= of_mesh_;
+    if (is_of_mesh) {
+      map_.findings.push_back(
+          StructureWithinMeshError(std::sqrt(explained), std::sqrt(of_mesh_)));
+    }
+    if (best < kLeastEvidence || is_of_mesh) {
       const double variance = problem_.Variance(
           homogeneous->square_sum,
           double(model_.NumIndependentRows() - homogeneous->unknowns.Rank()));
       EnterRegions(whole, *homogeneous, variance,
                    variance * homogeneous->unknowns.InverseGram());
-    } else if (regions && map_.region_log_evidence == best) {
+    } else if (are_regions) {
       map_.verdict = MapVerdict::kRegions;
       EnterRegions(regions->region_of_element, regions->fit, regions->variance,
                    regions->covariance);
@@ -170,12 +183,21 @@ class MapBuilder {
       }
     }
     map_.status = Status::kOk;
+    map_.displacement_residual = model_.RelativeResidual();
+    map_.fitted_displacement = model_.FittedDisplacement();
     Judge();
-    map_.work = model_.WorkDone();
+    EnterWork();
     return map_;
   }
 
  private:
+  void EnterWork() {
+    map_.work = model_.WorkDone();
+    if (mesh_error_) {
+      map_.work = map_.work + mesh_error_->WorkDone();
+    }
+  }
+
   std::optional<double> GivenNoise() const {
     const ObservedDisplacements& observed = model_.Observed();
     return observed.GivenNoise() ? std::optional<double>(1 / observed.Norm())
@@ -216,55 +238,14 @@ class MapBuilder {
   MapEstimate Failed(const Finding& finding) {
     map_.status = StatusOf(finding.code);
     map_.findings.push_back(finding);
-    map_.work = model_.WorkDone();
+    EnterWork();
     return map_;
   }
 
-  void EnterNoise(double square_sum, double variance) {
-    square_sum_ = square_sum;
+  // Moves the model to the map.
+  void EnterNoise(const MapState& state, double variance) {
+    ReturnTo(state, variance);
     map_.noise_sd = std::sqrt(variance) * model_.Observed().Norm();
-  }
-
-  // Returns what the elements may miss, by the change from linear ones: with
-  // the change d of the parameters and that of the displacements, du,
-  //
-  //   c^2 d d^T + (b |du|)^2 (Z^T Z)^-1,   c = 1/2,   b = 0.03 (2 / m)^(1/2)
-  //
-  // for m parameters, and |d nu| not below 0.2 of the largest |d ln E|.
-  Eigen::MatrixXd MeshCovariance(const std::vector<int>& region_of_element,
-                                 const LevelFit& fit) {
-    const Eigen::Index n = fit.levels.size();
-    const double nu = fit.state.poisson_ratio;
-    const double noise = problem_.noise.value_or(0);
-    FieldSensitivity coarse(*linear_, solver_);
-    const MapProblem of_coarse = {coarse, problem_.known_poisson_ratio,
-                                  problem_.noise};
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n + 1, n + 1);
-    if (!coarse.MoveTo(fit.state.log_moduli, nu, noise) ||
-        !model_.MoveTo(fit.state.log_moduli, nu, noise)) {
-      return covariance;
-    }
-    const double change = (coarse.Residual() - model_.Residual()).norm();
-    const double b = kOfDisplacementChange * std::sqrt(2.0 / double(n + 1));
-    covariance = b * b * change * change * fit.unknowns.InverseGram();
-    const std::optional<LevelFit> of_linear =
-        FitLevels(of_coarse, region_of_element, fit.levels, nu);
-    if (of_linear) {
-      Eigen::VectorXd d(n + 1);
-      d.head(n) = fit.levels - of_linear->levels;
-      if (!problem_.known_poisson_ratio) {
-        const double least = kLeastOfRatio *
-                             d.head(n).lpNorm<Eigen::Infinity>() /
-                             PoissonRatioSlope(nu);
-        d(n) = LogStiffnessRatio(nu) -
-               LogStiffnessRatio(of_linear->state.poisson_ratio);
-        d(n) = std::copysign(std::max(std::abs(d(n)), least), d(n));
-      } else {
-        d(n) = 0;
-      }
-      covariance += kOfMeshChange * kOfMeshChange * d * d.transpose();
-    }
-    return covariance;
   }
 
   // Enters the means with their covariance as (ln E, LogStiffnessRatio).
@@ -289,8 +270,8 @@ class MapBuilder {
                     const LevelFit& fit, double variance,
                     Eigen::MatrixXd covariance) {
     const Eigen::MatrixXd of_mesh =
-        linear_ != nullptr
-            ? MeshCovariance(region_of_element, fit)
+        mesh_error_
+            ? mesh_error_->CovarianceOf(region_of_element, fit)
             : Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
     covariance += of_mesh;
     const Eigen::Index n = fit.levels.size();
@@ -325,20 +306,33 @@ class MapBuilder {
     EnterMeans(fit.state, means * covariance * means.transpose());
     map_.mesh_covariance =
         OfParameters(fit.state, means * of_mesh * means.transpose());
-    EnterNoise(fit.square_sum, variance);
+    EnterNoise(fit.state, variance);
   }
 
   void EnterField(const SmoothMap& smooth) {
-    ReturnTo(smooth.state, smooth.variance);
+    EnterNoise(smooth.state, smooth.variance);
     const MapErrors errors = DescribeMap(problem_, *prior_, smooth);
+    Eigen::ArrayXd variances = errors.log_modulus_sd.array().square();
+    const Eigen::Vector2d widening(1, kWideningOfPoissonRatio);
+    Eigen::Matrix2d covariance = widening.asDiagonal() *
+                                 errors.covariance_of_means *
+                                 widening.asDiagonal();
+    Eigen::Matrix2d of_mesh = Eigen::Matrix2d::Zero();
+    if (mesh_error_) {
+      const MapChanges error = mesh_error_->ErrorOf(*prior_, smooth);
+      variances += error.log_moduli.col(0).array().square();
+      const Eigen::Vector2d of_means = widening.cwiseProduct(
+          Eigen::Vector2d(prior_->Volumes().dot(error.log_moduli.col(0)) /
+                              prior_->Volumes().sum(),
+                          error.log_stiffness_ratio(0)));
+      of_mesh = of_means * of_means.transpose();
+      covariance += of_mesh;
+    }
     map_.youngs_modulus = smooth.state.log_moduli.array().exp();
     map_.youngs_modulus_standard_error =
-        map_.youngs_modulus.cwiseProduct(errors.log_modulus_sd);
-    const Eigen::Vector2d widening(1, kWideningOfPoissonRatio);
-    EnterMeans(smooth.state, widening.asDiagonal() *
-                                 errors.covariance_of_means *
-                                 widening.asDiagonal());
-    EnterNoise(smooth.square_sum, smooth.variance);
+        map_.youngs_modulus.array() * variances.sqrt();
+    EnterMeans(smooth.state, covariance);
+    map_.mesh_covariance = OfParameters(smooth.state, of_mesh);
   }
 
   // Says what the numbers of the map mean.
@@ -352,34 +346,56 @@ class MapBuilder {
                                            ? map_.supported_parameters
                                            : double(map_.regions.size()));
     if (problem_.noise && freedom > 0) {
-      const double ratio = square_sum_ / (problem_.Variance(0, 1) * freedom);
+      const double ratio = (model_.Residual().squaredNorm() - of_mesh_) /
+                           (problem_.Variance(0, 1) * freedom);
       if (ratio > 1 + kMostMisfit * std::sqrt(2 / freedom)) {
         map_.findings.push_back(Misfit(std::sqrt(ratio)));
       }
     }
     const double spread =
         SpreadOfLog(map_.youngs_modulus.array().log(), prior_->Volumes());
-    if (scene_.origin == Origin::kMeasured &&
+    if (scene_.origin == Origin::kMeasured && !mesh_error_ &&
         map_.verdict != MapVerdict::kHomogeneous && spread < kOfTheMesh) {
       map_.findings.push_back(MayBeTheMesh(spread));
     }
+    JudgeResolution();
+  }
+
+  // Names the regions that are not resolved, and what limits the resolution
+  // there: the elements, where a map tells most of them apart.
+  void JudgeResolution() {
+    std::vector<std::string> widths;
+    bool is_by_elements = true;
     for (std::size_t i = 0; i < map_.regions.size(); ++i) {
-      if (!map_.regions[i].is_resolved) {
-        map_.findings.push_back(
-            NotResolved(int(i) + 1, map_.regions[i].diameter));
-        break;
+      if (map_.regions[i].is_resolved) {
+        continue;
       }
+      widths.push_back("region " + std::to_string(i + 1) + " (" +
+                       TwoDigits(map_.regions[i].diameter) + " wide)");
+      double volume = 0;
+      double resolved = 0;
+      for (Eigen::Index e = 0; e < prior_->NumElements(); ++e) {
+        if (map_.region_of_element[e] == int(i)) {
+          volume += prior_->Volumes()(e);
+          resolved += std::pow(prior_->Volumes()(e), 2) /
+                      std::pow(map_.resolution_length(e), prior_->Dimension());
+        }
+      }
+      is_by_elements = is_by_elements && resolved > kResolvedElements * volume;
+    }
+    if (!widths.empty()) {
+      map_.findings.push_back(NotResolved(widths, is_by_elements));
     }
   }
 
   const Scene& scene_;
-  const Scene* linear_;
-  SolverKind solver_;
   std::unique_ptr<FieldPrior> prior_;
   FieldSensitivity model_;
   MapProblem problem_;
+  std::optional<MapMeshError> mesh_error_;
+  // How much of the square sum is within what the elements may miss.
+  double of_mesh_ = 0;
   MapEstimate map_;
-  double square_sum_ = 0;
 };
 
 }  // namespace

@@ -23,9 +23,10 @@ namespace elastimate {
 /// Nodes, points, resultants, supports that moved by unknown amounts, free
 /// rigid motions and several load cases count as in a fit of few parameters.
 /// Displacements of Origin::kMeasured are fitted with quadratic elements,
-/// because what linear ones miss would look like structure; the errors of
-/// regions then include what their elements may miss.  Of `options`, a
-/// known Poisson's ratio and the solver count.  Materials of the scene do not.
+/// because what linear ones miss would look like structure.  Errors then
+/// include what quadratic ones may miss (MapMeshError), and a body whose
+/// structure explains no more than that is homogeneous.  Of `options`, a known
+/// Poisson's ratio and the solver count.  Materials of the scene do not.
 ///
 ///   const MapEstimate map = EstimateMap(scene, {});
 ///   if (map.IsUsable() && map.verdict == MapVerdict::kRegions) {

@@ -112,6 +112,14 @@ bool FieldSensitivity::MoveTo(const Eigen::VectorXd& log_moduli,
   return residual_.allFinite();
 }
 
+double FieldSensitivity::RelativeResidual() const {
+  return residual_.head(observed_.Size()).norm() / observed_.Measured().norm();
+}
+
+Eigen::MatrixXd FieldSensitivity::FittedDisplacement() const {
+  return motion_ ? motion_->FittedDisplacement() : Eigen::MatrixXd();
+}
+
 Eigen::VectorXd FieldSensitivity::Scatter(
     const Eigen::MatrixXd& of_elements,
     const Eigen::Ref<const Eigen::VectorXd>& factor) const {

@@ -54,6 +54,11 @@ class FieldSensitivity {
 
   /// Returns measured - model, num_rows values.
   const Eigen::VectorXd& Residual() const { return residual_; }
+  /// Returns |measured - model| of the displacements over |measured|.
+  double RelativeResidual() const;
+  /// Returns the displacement with the motions that were found: num_dofs x
+  /// num_load_cases; empty where no motion is unknown.
+  Eigen::MatrixXd FittedDisplacement() const;
   /// Returns S V for num_elements x n: num_rows x n.
   Eigen::MatrixXd Multiply(const Eigen::MatrixXd& v);
   /// Returns S^T W for rows W that Eliminate has been applied to, as those of

@@ -16,37 +16,55 @@ constexpr double kAccurateDraws = 0.1;
 
 }  // namespace
 
-MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
-                      const SmoothMap& map) {
+MapChanges ChangesOfMap(const MapProblem& problem, const FieldPrior& prior,
+                        const SmoothMap& map, const Eigen::MatrixXd& rows,
+                        const Eigen::MatrixXd& sources, double tolerance) {
   FieldSensitivity& model = problem.model;
-  const Eigen::Index n = prior.NumElements();
-  const FlatUnknowns unknowns(problem, map.state, Eigen::MatrixXd::Ones(n, 1));
-  std::mt19937_64 generator(1);
-  const double sigma = std::sqrt(map.variance);
-  const Eigen::MatrixXd eta = model.Eliminate(
-      sigma * StandardNormal(model.NumRows(), kDraws, generator));
-  const Eigen::MatrixXd zeta = StandardNormal(n, kDraws, generator);
+  const FlatUnknowns unknowns(problem, map.state,
+                              Eigen::MatrixXd::Ones(prior.NumElements(), 1));
   ConjugateGradientOptions options;
-  options.tolerance = kAccurateDraws;
+  options.tolerance = tolerance;
   const Eigen::MatrixXd y = map.modes.SolveFor(
       map.ratio,
       [&](const Eigen::MatrixXd& columns) {
         return MultiplyByCurvature(problem, prior, unknowns, columns);
       },
-      prior.ApplyTransposed(model.MultiplyTransposed(unknowns.Project(eta))) +
-          sigma / std::sqrt(map.ratio) * zeta,
+      prior.ApplyTransposed(model.MultiplyTransposed(unknowns.Project(rows))) +
+          sources,
       options);
   Eigen::MatrixXd fields = prior.Apply(y);
-  const Eigen::MatrixXd flat = unknowns.Solve(eta - model.Multiply(fields));
+  const Eigen::MatrixXd flat = unknowns.Solve(rows - model.Multiply(fields));
   fields.rowwise() += flat.row(0);
+  return {fields, flat.row(1)};
+}
 
+MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
+                      const SmoothMap& map) {
+  std::mt19937_64 generator(1);
+  const double sigma = std::sqrt(map.variance);
+  const Eigen::MatrixXd eta = problem.model.Eliminate(
+      sigma * StandardNormal(problem.model.NumRows(), kDraws, generator));
+  const Eigen::MatrixXd zeta =
+      StandardNormal(prior.NumElements(), kDraws, generator);
+  const MapChanges draws =
+      ChangesOfMap(problem, prior, map, eta,
+                   sigma / std::sqrt(map.ratio) * zeta, kAccurateDraws);
+  // Where k is that of the greatest evidence, tau^2 = k sigma^2 is |y|^2 /
+  // gamma. Where few measurements allow a smaller one only, the field is larger
+  // than its prior, and so is what they leave open.
+  const double excess =
+      std::max(1.0, map.y.squaredNorm() /
+                        (map.ratio * map.variance * map.effective_number));
   MapErrors errors;
   errors.log_modulus_sd =
-      (fields.rowwise().squaredNorm() / double(kDraws)).cwiseSqrt();
+      (excess * draws.log_moduli.rowwise().squaredNorm() / double(kDraws))
+          .cwiseSqrt();
   Eigen::Matrix2Xd means(2, kDraws);
-  means << prior.Volumes().transpose() * fields / prior.Volumes().sum(),
-      flat.row(1);
-  errors.covariance_of_means = means * means.transpose() / double(kDraws);
+  means << prior.Volumes().transpose() * draws.log_moduli /
+               prior.Volumes().sum(),
+      draws.log_stiffness_ratio;
+  errors.covariance_of_means =
+      excess * means * means.transpose() / double(kDraws);
   return errors;
 }
 

@@ -18,6 +18,27 @@ struct MapErrors {
   Eigen::Matrix2d covariance_of_means;
 };
 
+/// Changes of a map, a column for each.
+struct MapChanges {
+  Eigen::MatrixXd log_moduli;              ///< With the level.
+  Eigen::RowVectorXd log_stiffness_ratio;  ///< Of nu.
+};
+
+/// Returns the changes by changes W of the rows, and of y by the sources B,
+///
+///   (I / k + H) y = A^T S^T Pi W + B,
+///
+/// with the flat unknowns.  The error of y is `tolerance` in the norm of that
+/// system, relative.  Preconditions: the model is at the map, and Eliminate has
+/// been applied to W.  Cost: solves of the system by preconditioned conjugate
+/// gradients, all at once.
+[[nodiscard]] MapChanges ChangesOfMap(const MapProblem& problem,
+                                      const FieldPrior& prior,
+                                      const SmoothMap& map,
+                                      const Eigen::MatrixXd& rows,
+                                      const Eigen::MatrixXd& sources,
+                                      double tolerance);
+
 /// Draws fields from the posterior of the linearised model: noise eta and zeta
 /// of unit variance give
 ///

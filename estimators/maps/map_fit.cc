@@ -23,12 +23,14 @@ Estimate FitMap(const Scene& scene, const EstimatorOptions& options) {
     estimate.covariance.row(1).setConstant(Estimate::kUnknown);
     estimate.covariance.col(1).setConstant(Estimate::kUnknown);
   }
-  if (map.verdict != MapVerdict::kField && !map.mesh_covariance.isZero(0)) {
+  if (!map.mesh_covariance.isZero(0)) {
     estimate.error_budget.discretization =
         map.mesh_covariance.diagonal().cwiseSqrt().cwiseQuotient(
             Eigen::Vector2d(map.mean_youngs_modulus, 1));
   }
   estimate.noise_sd = map.noise_sd;
+  estimate.displacement_residual = map.displacement_residual;
+  estimate.fitted_displacement = map.fitted_displacement;
   estimate.map = map;
   return estimate;
 }

@@ -39,21 +39,39 @@ PlanJson FreeParametersJson(const LoadPlan& plan) {
   return list;
 }
 
+PlanJson CandidateJson(std::size_t place, const std::optional<double>& factor,
+                       const PlanBasis& basis,
+                       const std::vector<CandidateLoad>& candidates) {
+  const CandidateLoad& candidate = candidates[place];
+  const int load_case = basis.load_case_of_candidate[place];
+  return {
+      {"name", candidate.name},
+      {"load_case", load_case == 0 ? PlanJson(nullptr) : PlanJson(load_case)},
+      {"size", candidate.is_free_in_size && basis.is_scale_known && factor
+                   ? PlanJson(*factor)
+                   : PlanJson(nullptr)}};
+}
+
 PlanJson LoadJson(const LoadPlan& plan, const PlannedLoad& load,
                   const PlanBasis& basis,
                   const std::vector<CandidateLoad>& candidates) {
-  const CandidateLoad& candidate = candidates[load.candidate];
-  const int load_case = basis.load_case_of_candidate[load.candidate];
-  PlanJson json = {
-      {"name", candidate.name},
-      {"load_case", load_case == 0 ? PlanJson(nullptr) : PlanJson(load_case)},
-      {"size", candidate.is_free_in_size && basis.is_scale_known && load.factor
-                   ? PlanJson(*load.factor)
-                   : PlanJson(nullptr)}};
+  PlanJson json = CandidateJson(load.candidate, load.factor, basis, candidates);
   json.update(ErrorsJson(plan, load.errors));
   json["standard_error_of_worst_before"] =
       OrNull(load.errors.Along(plan.before.directions.col(0)));
   return json;
+}
+
+PlanJson SentencesJson(const std::vector<std::string>& notices) {
+  PlanJson sentences = PlanJson::array();
+  for (const std::string& notice : notices) {
+    sentences.push_back(Printable(notice, kLongestSentence));
+  }
+  return sentences;
+}
+
+PlanJson RelativeNoiseJson(const PlanBasis& basis) {
+  return basis.noise_sd ? PlanJson(nullptr) : PlanJson(basis.relative_noise);
 }
 
 }  // namespace
@@ -61,10 +79,6 @@ PlanJson LoadJson(const LoadPlan& plan, const PlannedLoad& load,
 std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
                      const std::vector<CandidateLoad>& candidates,
                      const std::vector<std::string>& notices) {
-  PlanJson sentences = PlanJson::array();
-  for (const std::string& notice : notices) {
-    sentences.push_back(Printable(notice, kLongestSentence));
-  }
   PlanJson loads = PlanJson::array();
   for (const PlannedLoad& load : plan.loads) {
     loads.push_back(LoadJson(plan, load, basis, candidates));
@@ -78,16 +92,38 @@ std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
       {"parameters", FreeParametersJson(plan)},
       {"parameters_from", basis.parameters},
       {"noise_sd", OrNull(basis.noise_sd)},
-      {"relative_noise",
-       basis.noise_sd ? PlanJson(nullptr) : PlanJson(basis.relative_noise)},
+      {"relative_noise", RelativeNoiseJson(basis)},
       {"before", PlanJson({{"load_cases", basis.load_cases},
                            {"measured", basis.is_measured}})},
       {"candidates", loads},
       {"sequence", sequence},
-      {"notices", sentences}};
+      {"notices", SentencesJson(notices)}};
   PlanJson complete = report;
   complete["before"].update(ErrorsJson(plan, plan.before));
   return complete.dump(2) + "\n";
+}
+
+std::string JsonMapPlan(const MapPlan& plan, const PlanBasis& basis,
+                        const std::vector<CandidateLoad>& candidates,
+                        const std::vector<std::string>& notices) {
+  PlanJson loads = PlanJson::array();
+  for (const PlannedMapLoad& load : plan.loads) {
+    loads.push_back(
+        CandidateJson(load.candidate, load.factor, basis, candidates));
+    loads.back()["supported_parameters"] = load.supported_parameters;
+  }
+  const PlanJson report = {{"elastimate", Version()},
+                           {"map", "youngs_modulus"},
+                           {"parameters_from", basis.parameters},
+                           {"noise_sd", OrNull(basis.noise_sd)},
+                           {"relative_noise", RelativeNoiseJson(basis)},
+                           {"before",
+                            {{"load_cases", basis.load_cases},
+                             {"measured", basis.is_measured},
+                             {"supported_parameters", plan.supported_before}}},
+                           {"candidates", loads},
+                           {"notices", SentencesJson(notices)}};
+  return report.dump(2) + "\n";
 }
 
 }  // namespace elastimate

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/estimators/plan/load_plan.h"
+#include "elastimate/estimators/plan/map_plan.h"
 
 namespace elastimate {
 
@@ -33,6 +34,12 @@ struct PlanBasis {
 [[nodiscard]] std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
                                    const std::vector<CandidateLoad>& candidates,
                                    const std::vector<std::string>& notices);
+
+/// Returns a plan of a map likewise.
+[[nodiscard]] std::string JsonMapPlan(
+    const MapPlan& plan, const PlanBasis& basis,
+    const std::vector<CandidateLoad>& candidates,
+    const std::vector<std::string>& notices);
 
 }  // namespace elastimate
 

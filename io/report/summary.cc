@@ -96,16 +96,28 @@ void AddErrors(const Estimate& estimate, std::ostringstream& text) {
 }
 
 // Adds the parameters of one isotropic material.
+// Returns a parameter with its error, or that it is known.
+std::string ParameterText(const ParameterEstimate& parameter) {
+  return parameter.is_known && std::isfinite(parameter.value)
+             ? NumberText(parameter.value, 6) + " (known)"
+             : WithError(parameter.value, parameter.standard_error);
+}
+
 void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
-  AddLine("Young's modulus E",
+  const bool is_mean =
+      estimate.map && estimate.map->verdict != MapVerdict::kHomogeneous;
+  AddLine(is_mean ? "geometric mean of E" : "Young's modulus E",
           WithError(elasticity.youngs_modulus,
                     estimate.YoungsModulusStandardError()),
           text);
-  AddLine(
-      "Poisson's ratio nu",
-      WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
-      text);
+  const bool is_known =
+      estimate.parameters.size() == 2 && estimate.parameters[1].is_known;
+  AddLine("Poisson's ratio nu",
+          is_known ? ParameterText(estimate.parameters[1])
+                   : WithError(elasticity.poisson_ratio,
+                               estimate.PoissonRatioStandardError()),
+          text);
   if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
     AddLine("95 % interval of nu",
             NumberText(estimate.poisson_ratio_interval->lower, 4) + " to " +
@@ -152,11 +164,7 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
     if (AxisOfParameter(estimate, i) != nullptr) {
       continue;
     }
-    AddLine(parameter.Label(),
-            parameter.is_known
-                ? NumberText(parameter.value, 6) + " (known)"
-                : WithError(parameter.value, parameter.standard_error),
-            text);
+    AddLine(parameter.Label(), ParameterText(parameter), text);
   }
 }
 

@@ -505,6 +505,9 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   }
   ChooseMaterials(path, mesh, choices.regions, scene, notices);
   ChooseLaw(path, choices.law, scene);
+  if (!choices.field.empty()) {
+    GiveField(choices.field, scene.materials);
+  }
   Validate(path, mesh, num_dropped > 0 || mesh.has_other_cells, scene);
   ChooseOrigin(path, mesh, choices.origin, scene);
   CheckObserved(path, scene);

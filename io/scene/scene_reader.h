@@ -47,10 +47,12 @@ struct SceneChoices {
   SectionChoice section;
   RegionChoice regions = RegionChoice::kAsGiven;
   LawChoice law;
+  /// A parameter that is to vary between elements, as by "fields"; or empty.
+  std::string field = {};
   /// Whether the camera lost the points of each of SceneReading::gaps, which
   /// then become nodes without a displacement.  Where this is empty, the
   /// specimen ends at the gaps.
-  std::vector<bool> filled_gaps;
+  std::vector<bool> filled_gaps = {};
   /// Replaces what the files say of the displacements.
   std::optional<Origin> origin = {};
 };

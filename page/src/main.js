@@ -45,7 +45,7 @@ function parameterTable() {
     const { name, label, interval, standard_error: error, value, is_relative: isRelative } = parameter;
     const explanation = meanings[name] && parameters.length <= 3 ? html("span", { class: "note" }, meanings[name]) : null;
     return [
-      [longLabel(label), isMean(report) && name === "youngs_modulus" ? " (mean over the specimen)" : "", explanation],
+      [longLabel(label), isMean(report) && name === "youngs_modulus" ? " (geometric mean over the specimen)" : "", explanation],
       valueText(parameter),
       interval === null ? "" : intervalText(interval),
       error !== null && isRelative && value ? percent(Math.abs(error / value)) : "",

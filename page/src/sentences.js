@@ -55,7 +55,7 @@ function trustSentence({ report, parameters }) {
     return sentence(report.diagnostics.why_no_standard_error || "how far it may be off is not known");
   }
   const places = known.length <= 2 ? known : known.slice(0, 1);
-  const ranges = places.map(({ label, interval }) => `${isMean(report) && label === "E" ? "the mean of E" : label} lies between ${intervalText(interval).replace(" to ", " and ")}`);
+  const ranges = places.map(({ label, interval }) => `${isMean(report) && label === "E" ? "the geometric mean of E" : label} lies between ${intervalText(interval).replace(" to ", " and ")}`);
   const [first] = partsOfError(report, parameters.indexOf(known[0]));
   const relative = known[0].is_relative;
   const cause = first

@@ -51,7 +51,7 @@ export function mapSection({ map }) {
     valueWithError(region.youngs_modulus, region.standard_error ?? 0),
     numberText(region.volume, 3),
     numberText(region.diameter, 3),
-    region.resolved ? "yes" : "no: its contrast is at least this",
+    region.resolved ? "yes" : "no: narrower than three resolution lengths",
   ]);
   return section(
     "Map of Young's modulus",

@@ -60,6 +60,38 @@ TEST_F(MapsOfBars, ShowTheStiffPart) {
             of_ends / (double(moduli.cols()) - num_middle) + std::log(2.5));
 }
 
+// The residual of the report is that of the fit, and those of the file are
+// solved for anew.
+TEST_F(MapsOfBars, WriteWhatWasFitted) {
+  std::string parameters = testing::ReadText(folder_ / "parameters.json");
+  for (std::size_t i; (i = parameters.find("e4")) != std::string::npos;) {
+    parameters.replace(i, 2, "e6");
+  }
+  testing::WriteText(folder_ / "stiff.json", parameters);
+  Succeed(
+      "simulate bar.vtu --regions=each --parameters=stiff.json --noise=0.005 "
+      "--noise_law=gaussian --out=measured.vtu");
+  const auto run = Succeed(
+      "estimate measured.vtu --estimator=auto --map=youngs_modulus "
+      "--origin=measured --nu=0.3 --json=report.json --out=map.vtu");
+  EXPECT_NE(run.output.find("0.3 (known)"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("geometric mean of E"), std::string::npos);
+  EXPECT_EQ(run.errors.find("--regions=each"), std::string::npos) << run.errors;
+  const auto report =
+      nlohmann::json::parse(testing::ReadText(folder_ / "report.json"));
+  EXPECT_EQ(report["mesh"]["order"], 2);
+  EXPECT_GT(report["error_budget"]["discretization"]["youngs_modulus"], 0);
+  const double relative = report["residual"]["displacement_relative"];
+  const MeshFile map = ReadMeshFile(folder_ / "map.vtu");
+  const Eigen::MatrixXd* const residual =
+      FindArray(map.node_arrays, "displacement_residual");
+  const Eigen::MatrixXd* const measured =
+      FindArray(map.node_arrays, "displacement");
+  ASSERT_NE(residual, nullptr);
+  ASSERT_NE(measured, nullptr);
+  EXPECT_NEAR(residual->norm() / measured->norm() / relative, 1, 1e-6);
+}
+
 TEST_F(MapsOfBars, TakeEachElementByItselfWithClosedForm) {
   Succeed("generate cuboid --elements=hex8 --cells=4,4,4 --out=block.vtu");
   Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=exact.vtu");
@@ -84,8 +116,9 @@ TEST_F(MapsOfBars, RefuseWhatTheyDoNotTake) {
   Refuse(map + "--estimator=reduced-fe", "it estimates no map of a modulus");
   Refuse(map + "--estimator=auto --material=auto",
          "--map is for one isotropic material");
-  Refuse(map + "--estimator=auto --regions=merge",
-         "--map is for one isotropic material");
+  Refuse(map + "--estimator=auto --regions=merge", "leave out --regions=merge");
+  Refuse(map + "--estimator=auto --material=orthotropic",
+         "leave out --material=orthotropic");
   Refuse(map + "--estimator=iterative-fe --kinematics=large",
          "a map is of small strains");
   Refuse(map + "--estimator=iterative-fe --nu_min=0.1",

@@ -160,6 +160,7 @@ std::vector<Finding> OfElements() {
           0.0004),
       DiscretizationErrorFinding(EstimateOfElements(0.0312345)),
       MeshErrorUnknown(),
+      MeshErrorOfMapUnknown(),
       ComputedByLinearElements(Severity::kError),
       ComputedByLinearElements(Severity::kWarning),
       SupportsEndWithinElements(Eigen::Vector2d(0.0312345, 0.0212345),
@@ -170,9 +171,12 @@ std::vector<Finding> OfElements() {
 
 std::vector<Finding> OfMaps() {
   return {Misfit(1.23),
-          NotResolved(2, 0.123),
+          NotResolved({"region 1 (0.12 wide)", "region 2 (0.12 wide)",
+                       "region 3 (0.12 wide)"},
+                      false),
           NoiseNeeded(123456, 12345),
           MayBeTheMesh(0.0123),
+          StructureWithinMeshError(0.0123, 0.0234),
           LocalMapNeedsExactData(kLong),
           LocalMapUndetermined(),
           LocalModuliNotPositive(1000000, 1000000)};

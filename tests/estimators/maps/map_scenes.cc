@@ -101,10 +101,19 @@ double LogModulusAt(const std::string& name, const Eigen::VectorXd& point) {
   throw std::invalid_argument("no map " + name);
 }
 
-MapScene MakeMapScene(const std::string& name, ElementKind kind, int cells,
-                      double relative_noise, std::uint64_t seed,
-                      double poisson_ratio) {
+namespace {
+
+// A body before its displacements, up to their noise, are known.
+struct UnmeasuredMap {
   MapScene map;
+  Scene truth;  // With a material of each element.
+  Eigen::VectorXd parameters;
+};
+
+UnmeasuredMap MakeUnmeasured(const std::string& name, ElementKind kind,
+                             int cells, double poisson_ratio) {
+  UnmeasuredMap made;
+  MapScene& map = made.map;
   Scene scene = UnsupportedScene(UnitGrid(kind, cells));
   const int dimension = scene.mesh.Dimension();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(dimension);
@@ -120,24 +129,46 @@ MapScene MakeMapScene(const std::string& name, ElementKind kind, int cells,
 
   const int num_elements = int(scene.mesh.NumElements());
   map.log_moduli.resize(num_elements);
-  Scene truth = scene;
+  Scene& truth = made.truth;
+  truth = scene;
   truth.mesh.regions.setLinSpaced(num_elements, 0, num_elements - 1);
   truth.materials.resize(num_elements);
-  Eigen::VectorXd parameters(2 * num_elements);
+  Eigen::VectorXd& parameters = made.parameters;
+  parameters.resize(2 * num_elements);
   for (int e = 0; e < num_elements; ++e) {
     map.log_moduli(e) = LogModulusAt(name, ElementCentre(scene.mesh, e));
     truth.materials[e].regions = {e};
     parameters.segment<2>(2 * e) << std::exp(map.log_moduli(e)), poisson_ratio;
   }
+  map.scene = scene;
+  return made;
+}
+
+}  // namespace
+
+MapScene MakeMapScene(const std::string& name, ElementKind kind, int cells,
+                      double relative_noise, std::uint64_t seed,
+                      double poisson_ratio) {
+  UnmeasuredMap made = MakeUnmeasured(name, kind, cells, poisson_ratio);
+  Scene& scene = made.map.scene;
   scene.load_cases[0].displacement =
-      DisplacementsAt(truth, parameters)
-          .reshaped(dimension, scene.mesh.NumNodes());
+      DisplacementsAt(made.truth, made.parameters)
+          .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
   scene.origin = Origin::kComputed;
   if (relative_noise > 0) {
-    map.noise_sd = AddNoise(relative_noise, seed, scene);
+    made.map.noise_sd = AddNoise(relative_noise, seed, scene);
   }
-  map.scene = scene;
-  return map;
+  return made.map;
+}
+
+MapScene MakeSpecimen(const std::string& name, ElementKind kind, int cells,
+                      double relative_noise, std::uint64_t seed) {
+  UnmeasuredMap made = MakeUnmeasured(name, kind, cells, 0.3);
+  Scene world = QuadraticScene(LinearScene(QuadraticScene(made.truth)));
+  MeasureMaterials(made.parameters, world);
+  TakeDisplacements(world, made.map.scene);
+  made.map.noise_sd = AddNoise(relative_noise, seed, made.map.scene);
+  return made.map;
 }
 
 MapScene HeldOutBlock(int cells, double relative_noise) {

@@ -37,6 +37,11 @@ MapScene MakeMapScene(const std::string& name, ElementKind kind, int cells,
                       double relative_noise, std::uint64_t seed = 1,
                       double poisson_ratio = 0.3);
 
+/// Returns the same body as a specimen: with displacements that quadratic
+/// elements of half the size made.
+MapScene MakeSpecimen(const std::string& name, ElementKind kind, int cells,
+                      double relative_noise, std::uint64_t seed = 1);
+
 /// Returns a block of 1 x 1 x 1.2 of `cells` x `cells` x `cells` + 1 boxes of
 /// six tetrahedra with a box of contrast 3 off its centre, E = 2 and 6, which
 /// was measured with noise at all nodes, in a
