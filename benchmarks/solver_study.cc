@@ -37,10 +37,13 @@ constexpr double kRepeatSeconds = 0.2;
 
 struct Body {
   std::string name;
-  Eigen::Vector3i cells;
+  Eigen::Vector3i cells;  ///< Those of a cuboid.
   Eigen::Vector3d size;
   int order;
+  int organ = 0;  ///< Tetrahedra of an organ, or 0 for a cuboid.
 };
+
+Body Organ(int tetrahedra) { return {"organ", {}, {}, 1, tetrahedra}; }
 
 std::vector<Body> Bodies(bool is_quick) {
   const auto cube = [](int cells, int order) {
@@ -48,7 +51,7 @@ std::vector<Body> Bodies(bool is_quick) {
                 Eigen::Vector3d::Ones(), order};
   };
   if (is_quick) {
-    return {cube(6, 1), cube(4, 2)};
+    return {cube(6, 1), cube(4, 2), Organ(1000)};
   }
   return {cube(13, 1),
           cube(19, 1),
@@ -59,10 +62,16 @@ std::vector<Body> Bodies(bool is_quick) {
           {"bar", {200, 12, 12}, {10, 1, 1}, 1},
           cube(13, 2),
           cube(19, 2),
-          {"plate", {80, 80, 1}, {1, 1, 0.02}, 2}};
+          {"plate", {80, 80, 1}, {1, 1, 0.02}, 2},
+          Organ(200000)};
 }
 
 Scene MakeScene(const Body& body) {
+  if (body.organ > 0) {
+    OrganOptions options;
+    options.tetrahedra = body.organ;
+    return OrganScene(options);
+  }
   CuboidOptions options;
   options.cells = body.cells;
   options.size = body.size;
@@ -217,7 +226,7 @@ std::string AsText(const Measurement& measured) {
 StudyResult RunSolverStudy(bool is_quick, Progress& progress) {
   Table table(
       "solvers",
-      {"body", "order [1]", "tetrahedra [1]", "solver", "blas_threads [1]",
+      {"body", "order [1]", "tetrahedra [1]", "solver", "threads [1]",
        "outcome", "free_degrees_of_freedom [1]", "factorization_flops [1]",
        "analysis_time [s]", "factorization_time [s]", "rough_solve_time [s]",
        "rough_iterations [1]", "solve_time [s]", "iterations [1]",
@@ -230,10 +239,12 @@ StudyResult RunSolverStudy(bool is_quick, Progress& progress) {
   std::vector<Variant> variants = {
       {"cholmod", all_threads}, {"cholesky", all_threads}, {"cholesky", 1}};
   if (HasMultigrid()) {
+    variants.push_back({"multigrid", all_threads});
     variants.push_back({"multigrid", 1});
   }
   for (const Body& body : Bodies(is_quick)) {
-    const std::int64_t tetrahedra = std::int64_t{5} * body.cells.prod();
+    const std::int64_t tetrahedra =
+        body.organ > 0 ? body.organ : std::int64_t{5} * body.cells.prod();
     for (const Variant& variant : variants) {
       progress.Show("solvers: " + body.name + " of " +
                     std::to_string(tetrahedra) + " tetrahedra, " +
