@@ -103,7 +103,7 @@ class Estimator : public std::enable_shared_from_this<Estimator> {
   /// the same number of BLAS threads, unless another thread calls rand()
   /// meanwhile, which the ordering of a factorisation (METIS) seeds and draws
   /// from.
-  [[nodiscard]] Estimate Run(const Scene& measured,
+  [[nodiscard]] Estimate Run(const Scene& scene,
                              const EstimatorOptions& options) const;
 
   /// Does all that does not depend on what was measured, for a scene that is
