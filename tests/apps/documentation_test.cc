@@ -257,13 +257,15 @@ TEST_F(Documentation, HasTheReportOfTheProgram) {
 TEST_F(Documentation, HasTheCommandsOfTheTenBlocks) {
   const std::vector<std::string> blocks =
       Blocks("examples/ten_blocks/README.md", "");
-  ASSERT_EQ(blocks.size(), 2U);
+  ASSERT_EQ(blocks.size(), 4U);
   // The last command but one exits with 1, because its data do not determine a
   // parameter; the shell goes on all the same.
   EXPECT_THAT(
       RunCommands(blocks[0]),
       ::testing::HasSubstr("the data do not determine E of region 10 ("));
   EXPECT_GT(std::filesystem::file_size(folder_ / "ten_blocks.png"), 10000U);
+  EXPECT_THAT(RunCommands(blocks[2]),
+              ::testing::HasSubstr("a field that varies smoothly"));
 }
 
 // What the README says of the estimate of this scene is checked by
