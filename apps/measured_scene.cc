@@ -22,7 +22,7 @@ SceneReading ReadMeasuredScene(const std::vector<std::string>& arguments) {
                          Measurement::kRequired,
                          {SectionFromFlags(), RegionsFromFlag(),
                           ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(),
-                           FieldFromFlag(), is_filled, OriginFromFlag()});
+                          FieldFromFlag(), is_filled, OriginFromFlag()});
       });
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
