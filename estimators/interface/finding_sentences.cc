@@ -833,8 +833,8 @@ Finding NotResolved(const std::vector<std::string>& regions,
   return {FindingCode::kNotResolved, Severity::kWarning,
           FirstOf(regions) + " of the map " + (is_one ? "is" : "are") +
               " narrower than three resolution lengths, so that " +
-              (is_one ? "its modulus" : "their moduli") +
-              " may differ more from what is around",
+              (is_one ? "its" : "their") + " surroundings blur " +
+              (is_one ? "its modulus" : "their moduli"),
           is_by_elements ? "use a finer mesh"
                          : "measure more points or with less noise, or add "
                            "load cases"};
@@ -845,7 +845,8 @@ Finding NoiseNeeded(double num_rows, double supported_parameters) {
           "the " + NumberText(num_rows) +
               " measured components are few beside " +
               TwoDigits(supported_parameters) +
-              " parameters of the map, so that noise may pass for structure",
+              " parameters of the map, so that noise and structure are hardly "
+              "told apart and errors may be too small",
           "give the standard deviation of the noise (--noise_sd)"};
 }
 

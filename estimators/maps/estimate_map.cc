@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "elastimate/core/laws/elasticity.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/maps/field_prior.h"
@@ -245,7 +245,10 @@ class MapBuilder {
   // Moves the model to the map.
   void EnterNoise(const MapState& state, double variance) {
     ReturnTo(state, variance);
-    map_.noise_sd = std::sqrt(variance) * model_.Observed().Norm();
+    // Rows are weighted by a noise that is given.
+    const ObservedDisplacements& observed = model_.Observed();
+    map_.noise_sd = std::sqrt(variance) * observed.Norm() *
+                    observed.GivenNoise().value_or(1);
   }
 
   // Enters the means with their covariance as (ln E, LogStiffnessRatio).
@@ -404,7 +407,7 @@ MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
   const Scene given = OfOneMaterial(scene);
   const bool is_raised =
       scene.origin == Origin::kMeasured && scene.mesh.Order() == 1;
-  const Scene modelled = is_raised ? QuadraticScene(given) : given;
+  const Scene modelled = is_raised ? FinerScene(given) : given;
   std::optional<double> start;
   if (HasAnyForce(modelled)) {
     start =

@@ -119,10 +119,12 @@ TEST(EstimateMap, TakesAGivenNoiseAndAGivenPoissonRatio) {
   EXPECT_EQ(map.poisson_ratio, 0.3);
   EXPECT_EQ(map.covariance(1, 1), 0);
   EXPECT_FALSE(HasFinding(map, FindingCode::kMisfit));
-  // A wrong noise is said.
+  EXPECT_NEAR(map.noise_sd, truth.noise_sd, 1e-9 * truth.noise_sd);
+  // A wrong noise is said, and the right one found.
   truth.scene.load_cases[0].noise_sd = truth.noise_sd / 3;
-  EXPECT_TRUE(
-      HasFinding(EstimateMap(truth.scene, options), FindingCode::kMisfit));
+  const MapEstimate other = EstimateMap(truth.scene, options);
+  EXPECT_TRUE(HasFinding(other, FindingCode::kMisfit));
+  EXPECT_NEAR(other.noise_sd, truth.noise_sd, 0.15 * truth.noise_sd);
 }
 
 // E in the unit of the force, and lengths in millimetres.
