@@ -62,8 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, BlocksOfSize,
                                            std::tuple(6, 3), std::tuple(6, 6)),
                          [](const auto& info) {
                            return std::to_string(std::get<0>(info.param)) +
-                                  "x" +
-                                  std::to_string(std::get<1>(info.param));
+                                  "x" + std::to_string(std::get<1>(info.param));
                          });
 
 TEST_P(BlocksOfSize, AreMultipliedAsADenseMatrix) {

@@ -268,7 +268,7 @@ TEST(FindingSentences, NameARigidMotionFirstWhereRotationsAreFarAboveStrains) {
 
 TEST(FindingSentences, CountOneThingInTheSingular) {
   EXPECT_EQ(OutliersLeftOut({{0, 5, false}}, {0.05, 0}, {})
-                .text.find("1 outlier (node 5) is left out"),
+                .text.find("1 outlier (node 5, counted from 0) is left out"),
             0);
   EXPECT_EQ(FramesLeftOut(1, 10).text, "1 of 10 frames is not used");
   EXPECT_EQ(NoConvergence(1).text.find("iterations"), std::string::npos);

@@ -183,7 +183,7 @@ TEST_F(MeasuredMeshTest, HasTheGapsThatAreFilled) {
   EXPECT_EQ(open.gaps[0].center, Eigen::Vector2d(3, 2));
   const SceneReading filled =
       ReadScene({folder_.Write("scene.json", kStrip)}, Measurement::kRequired,
-                {{}, {}, {}, {true}});
+                {{}, {}, {}, {}, {true}});
   EXPECT_EQ(filled.scene.mesh.NumElements(), 48);
   EXPECT_EQ(filled.scene.load_cases[0].observed.count(), 2 * (65 - 5));
   for (const auto& [word, num_elements] :
