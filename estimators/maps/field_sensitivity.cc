@@ -113,7 +113,8 @@ bool FieldSensitivity::MoveTo(const Eigen::VectorXd& log_moduli,
 }
 
 double FieldSensitivity::RelativeResidual() const {
-  return residual_.head(observed_.Size()).norm() / observed_.Measured().norm();
+  return residual_.head(observed_.Size()).norm() /
+         observed_.MeasuredWithoutTurn().norm();
 }
 
 Eigen::MatrixXd FieldSensitivity::FittedDisplacement() const {
@@ -188,8 +189,10 @@ Eigen::MatrixXd FieldSensitivity::MultiplyTransposed(const Eigen::MatrixXd& w) {
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto of_column = Eigen::seq(j, Eigen::last, n);
-      sources(Eigen::all, of_column) =
+      const Eigen::MatrixXd seen =
           observed_.RestrictTransposed(some.col(j).head(observed_.Size()));
+      sources(Eigen::all, of_column) =
+          motion_ ? motion_->TurnedBack(seen) : seen;
       if (held.size() > 0) {
         held(Eigen::all, of_column) = motion_->ResultantsTransposed(
             some.col(j).tail(motion_->NumResultants()));

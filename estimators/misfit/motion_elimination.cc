@@ -229,6 +229,13 @@ Eigen::MatrixXd MotionElimination::Turned(Eigen::MatrixXd changes) const {
   return changes;
 }
 
+Eigen::MatrixXd MotionElimination::TurnedBack(Eigen::MatrixXd changes) const {
+  for (Eigen::Index k = 0; k < Eigen::Index(cameras_.size()); ++k) {
+    changes.col(k) = TurnedBack(k, changes.col(k));
+  }
+  return changes;
+}
+
 void MotionElimination::Linearize() {
   const Mesh& mesh = scene_.mesh;
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {

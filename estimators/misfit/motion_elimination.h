@@ -94,6 +94,10 @@ class MotionElimination {
   Eigen::VectorXd Eliminate(const Eigen::MatrixXd& displacements,
                             const Eigen::MatrixXd& support_forces);
 
+  /// Turns changes of seen displacements, num_dofs x num_load_cases, as the
+  /// specimen sees them: the transpose of what Eliminate turns.
+  Eigen::MatrixXd TurnedBack(Eigen::MatrixXd changes) const;
+
   /// The rows without what amounts could explain.
   Eigen::VectorXd Eliminate(Eigen::VectorXd rows);
 

@@ -204,7 +204,7 @@ TEST_F(Page, HasResultantsInTheMiddleOfTheirFaces) {
                 "--out=report.html")
                 .exit_code,
             1);
-  const json& load_case = Data()["specimen"]["cases"][0];
+  const json load_case = Data()["specimen"]["cases"][0];
   EXPECT_EQ(load_case["loads"][0]["at"], json({2.0, 1.0, 0.0}));
   const auto moved = Numbers<std::uint8_t>(load_case["moved"]);
   const auto held = Numbers<std::uint8_t>(load_case["held"]);
