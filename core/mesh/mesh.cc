@@ -230,18 +230,19 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
               "longest edge); remove it or mesh again");
     }
     if (why_not == "bent") {
-      throw InvalidElement(element, ElementName(mesh, element) +
-                                        " is bent so far that it folds onto "
-                                        "itself (the determinant of its "
-                                        "map changes sign); order its nodes as "
-                                        "VTK does, or mesh again with "
-                                        "smaller elements or straight edges");
+      throw InvalidElement(
+          element,
+          ElementName(mesh, element) +
+              " is bent so far that it folds onto itself (the determinant of "
+              "its map changes sign); order its nodes as VTK does, or mesh "
+              "again with smaller elements or straight edges");
     }
     if (!why_not.empty()) {
-      throw InvalidElement(element, ElementName(mesh, element) +
-                                        " is folded (its orientation changes "
-                                        "between its vertices); order "
-                                        "its nodes as VTK does, or mesh again");
+      throw InvalidElement(
+          element,
+          ElementName(mesh, element) +
+              " is folded (its orientation changes between its vertices); "
+              "order its nodes as VTK does, or mesh again");
     }
     for (Eigen::Index i = 0; i < mesh.elements.rows(); ++i) {
       used[nodes[i]] = 1;

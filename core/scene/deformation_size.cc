@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/median.h"
 #include "elastimate/core/mesh/nearest_points.h"
 
 namespace elastimate {
@@ -28,13 +29,8 @@ constexpr int kNeighbours = 4;
 // Noise stays below this many times the differences among neighbours, and a
 // kink of the displacement, too.
 constexpr double kStray = 8;
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
-double Median(const Eigen::VectorXd& values) {
+double MedianOf(const Eigen::VectorXd& values) {
   return Median(std::vector<double>(values.begin(), values.end()));
 }
 
@@ -206,11 +202,11 @@ Observed WithoutStrayValues(const Frame& frame, const Observed& observed) {
   Eigen::VectorXd spread(num_values);
   for (Eigen::Index i = 0; i < num_values; ++i) {
     const Eigen::VectorXd around = rest(neighbours[i]);
-    const double middle = Median(around);
+    const double middle = MedianOf(around);
     difference(i) = std::abs(rest(i) - middle);
-    spread(i) = Median((around.array() - middle).abs());
+    spread(i) = MedianOf((around.array() - middle).abs());
   }
-  const double usual = Median(difference);
+  const double usual = MedianOf(difference);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < num_values; ++i) {
     if (difference(i) <= kStray * (spread(i) + usual)) {

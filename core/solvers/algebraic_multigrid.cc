@@ -10,11 +10,11 @@ constexpr int kMostIterations = 500;
 // Aggregates of few nodes leave coarse spaces modes without energy.
 constexpr double kShift = 1e-6;
 
-Eigen::MatrixXd DiagonalOf(const BlockMatrix& a) {
-  const Eigen::MatrixXd blocks = DiagonalBlocks(a);
-  Eigen::MatrixXd diagonal(1, blocks.cols());
+// Returns the diagonal of blocks that stand side by side.
+Eigen::RowVectorXd DiagonalOf(const Eigen::MatrixXd& blocks) {
+  Eigen::RowVectorXd diagonal(blocks.cols());
   for (Eigen::Index i = 0; i < blocks.cols(); ++i) {
-    diagonal(i) = blocks(i % a.block_rows, i);
+    diagonal(i) = blocks(i % blocks.rows(), i);
   }
   return diagonal;
 }
@@ -84,12 +84,12 @@ bool AlgebraicMultigrid::SetUpCycle() {
         [&from = spaces_.interpolations[i - 1]](const Eigen::MatrixXd& x) {
           return Multiply(from, x);
         };
+    const Eigen::MatrixXd blocks = DiagonalBlocks(matrix);
+    const Eigen::RowVectorXd diagonal = DiagonalOf(blocks);
     // Blocks of coarse spaces may be singular, as their modes may be.
-    const Eigen::MatrixXd blocks =
-        i + 1 == num_spaces ? DiagonalBlocks(matrix) : DiagonalOf(matrix);
-    const Eigen::VectorXd has_energy =
-        (DiagonalOf(matrix).array() > 0).cast<double>().matrix().transpose();
-    space.inverse_blocks = InverseBlocks(blocks, has_energy);
+    space.inverse_blocks = InverseBlocks(
+        i + 1 == num_spaces ? blocks : Eigen::MatrixXd(diagonal),
+        (diagonal.array() > 0).cast<double>().matrix().transpose());
     int num_products = 0;
     space.largest_eigenvalue =
         LargestEigenvalue(space.multiply, space.inverse_blocks, num_products);

@@ -30,35 +30,40 @@ void InvertFree(const Eigen::MatrixXd& blocks, const Eigen::VectorXd& is_free,
   }
 }
 
-// Sets x to keep x + B (scale_a a + scale_b b) for such blocks B, in one pass
-// over memory.
-template <int kDimension>
-void AddEach(const Eigen::MatrixXd& blocks, double scale_a,
-             const Eigen::MatrixXd& a, double scale_b, const Eigen::MatrixXd& b,
-             double keep, Eigen::MatrixXd& x) {
-  using Vector = Eigen::Matrix<double, kDimension, 1>;
+// Sets x to keep x + B v for such blocks B, in one pass over memory.
+template <int kDimension, class Columns>
+void AddEach(const Eigen::MatrixXd& blocks, const Columns& v, double keep,
+             Eigen::MatrixXd& x) {
   for (Eigen::Index k = 0; k < x.cols(); ++k) {
     for (Eigen::Index i = 0; i < x.rows(); i += kDimension) {
-      const Vector sum = scale_a * a.col(k).segment<kDimension>(i) +
-                         scale_b * b.col(k).segment<kDimension>(i);
-      auto of_node = x.col(k).segment<kDimension>(i);
-      of_node = keep * of_node + (blocks.middleCols<kDimension>(i)
-                                      .template topRows<kDimension>()
-                                      .lazyProduct(sum));
+      const Eigen::Matrix<double, kDimension, 1> of_node =
+          v.col(k).template segment<kDimension>(i);
+      auto sum = x.col(k).segment<kDimension>(i);
+      sum = keep * sum + (blocks.middleCols<kDimension>(i)
+                              .template topRows<kDimension>()
+                              .lazyProduct(of_node));
     }
   }
 }
 
-void AddBlocksTimes(const Eigen::MatrixXd& blocks, double scale_a,
-                    const Eigen::MatrixXd& a, double scale_b,
-                    const Eigen::MatrixXd& b, double keep, Eigen::MatrixXd& x) {
+template <class Columns>
+void AddBlocksTimes(const Eigen::MatrixXd& blocks, const Columns& v,
+                    double keep, Eigen::MatrixXd& x) {
   if (blocks.rows() == 3) {
-    AddEach<3>(blocks, scale_a, a, scale_b, b, keep, x);
+    AddEach<3>(blocks, v, keep, x);
   } else if (blocks.rows() == 2) {
-    AddEach<2>(blocks, scale_a, a, scale_b, b, keep, x);
+    AddEach<2>(blocks, v, keep, x);
   } else {
-    AddEach<1>(blocks, scale_a, a, scale_b, b, keep, x);
+    AddEach<1>(blocks, v, keep, x);
   }
+}
+
+template <class Columns>
+Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
+                               const Columns& v) {
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(v.rows(), v.cols());
+  AddBlocksTimes(blocks, v, 1, products);
+  return products;
 }
 
 // Returns what two steps of Chebyshev's iteration for K x = force make of
@@ -69,10 +74,9 @@ Eigen::MatrixXd Smooth(const CycleSpace& space, const Eigen::MatrixXd& force) {
   // The three-term recurrence is that of [Saad, Iterative Methods for Sparse
   // Linear Systems, algorithm 12.1].
   const double share = 1 / (2 * middle / radius - radius / middle);
-  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(force.rows(), force.cols());
-  AddBlocksTimes(space.inverse_blocks, 1 / middle, force, 0, force, 0, x);
-  const double scale = 2 * share / radius;
-  AddBlocksTimes(space.inverse_blocks, scale, force, -scale, space.multiply(x),
+  Eigen::MatrixXd x = MultiplyBlocks(space.inverse_blocks, force / middle);
+  const Eigen::MatrixXd product = space.multiply(x);
+  AddBlocksTimes(space.inverse_blocks, 2 * share / radius * (force - product),
                  1 + share * radius / middle, x);
   return x;
 }
@@ -131,9 +135,7 @@ double LargestEigenvalue(const ColumnOperator& multiply,
   const ConjugateGradientResult result = SolveByConjugateGradients(
       multiply,
       [&](const Eigen::MatrixXd& x) {
-        Eigen::MatrixXd products = Eigen::MatrixXd::Zero(x.rows(), x.cols());
-        AddBlocksTimes(inverse_blocks, 1, x, 0, x, 0, products);
-        return products;
+        return MultiplyBlocks(inverse_blocks, x);
       },
       multiply(RandomSigns(inverse_blocks.cols())), {}, options);
   num_products += 1 + result.products;

@@ -486,13 +486,10 @@ void EnterElasticity(Estimate& estimate) {
 void EnterParametersOfElasticity(const Scene& scene,
                                  const EstimatorOptions& options,
                                  Estimate& estimate) {
-  // The fit may have taken other elements than those of the scene.
-  const int order = estimate.element_order;
-  EnterParameters(scene, FreeParameters(scene, options),
-                  Eigen::Vector2d(estimate.elasticity.youngs_modulus,
-                                  estimate.elasticity.poisson_ratio),
-                  estimate);
-  estimate.element_order = order;
+  estimate.parameters =
+      DescribeParameters(scene, FreeParameters(scene, options).All(),
+                         Eigen::Vector2d(estimate.elasticity.youngs_modulus,
+                                         estimate.elasticity.poisson_ratio));
   estimate.parameter_covariance = estimate.covariance;
 }
 

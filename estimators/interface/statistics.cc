@@ -45,16 +45,6 @@ double PoissonProbability(double expected, double count) {
       boost::math::complement(boost::math::poisson(expected), count - 1));
 }
 
-double Median(std::vector<double> values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) {
-    return *middle;
-  }
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
-}
-
 double LeastAbsoluteDeviations(const Eigen::VectorXd& x,
                                const Eigen::VectorXd& y) {
   std::vector<std::pair<double, double>> ratios;  // y / x and its weight.

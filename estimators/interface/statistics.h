@@ -30,10 +30,6 @@ double ChiSquaredQuantile(double degrees_of_freedom, double probability_above);
 /// Preconditions: `expected` > 0, `count` >= 1.
 double PoissonProbability(double expected, double count);
 
-/// The median; the mean of the middle two of an even number of values.
-/// Precondition: not empty.  O(n).
-double Median(std::vector<double> values);
-
 /// The minimiser t of the sum of |y_i - t x_i|: the median of y_i / x_i with
 /// weights |x_i|.  Precondition: some x_i is not zero.  O(n log n).
 double LeastAbsoluteDeviations(const Eigen::VectorXd& x,

@@ -23,7 +23,7 @@ struct PlannedMapLoad {
 /// Which load to measure next for a map of Young's modulus.
 struct MapPlan {
   double supported_before;  ///< By the load cases of the scene alone.
-  /// Those that support the most parameters first.
+  /// The load that supports the most parameters comes first.
   std::vector<PlannedMapLoad> loads;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/median.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"

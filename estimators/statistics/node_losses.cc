@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "elastimate/core/algebra/median.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {

@@ -7,6 +7,7 @@
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
+
 std::string FileExtension(const std::filesystem::path& path) {
   std::string small = path.extension().string();
   std::string capital = small;

@@ -8,13 +8,6 @@
 namespace elastimate {
 namespace {
 
-TEST(Median, OfOddAndEvenNumbersOfValues) {
-  EXPECT_EQ(Median({3}), 3);
-  EXPECT_EQ(Median({5, 1, 3}), 3);
-  EXPECT_EQ(Median({4, 1, 3, 2}), 2.5);
-  EXPECT_EQ(Median({1e9, -1e9, 0, 1}), 0.5);
-}
-
 TEST(LeastAbsoluteDeviations, IsNotMovedByOutliers) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(50, -3, 4);
   Eigen::VectorXd y = 2.5 * x;
