@@ -36,8 +36,8 @@ namespace elastimate {
 /// For laws of large strains, F has the columns at the measured q, and the
 /// covariance has the tangent there (WorkBalance), so that noise biases the
 /// estimate to second order.  The forces of such a law must be linear in the
-/// moduli, which excludes plane stress.  Throws std::invalid_argument where a displacement turns an
-/// element inside out.
+/// moduli, which excludes plane stress.  Throws std::invalid_argument where a
+/// displacement turns an element inside out.
 ///
 /// Nothing here sees what the elements miss, or whether regions are right: of
 /// measured displacements (Origin::kMeasured) the errors are those of noise

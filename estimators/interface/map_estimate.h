@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/eigen_abi.h"
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/finding.h"
 
@@ -79,6 +80,7 @@ struct MapEstimate {
   /// The displacement of a scene of unknown motion
   /// (Estimate::fitted_displacement); empty for other scenes.
   Eigen::MatrixXd fitted_displacement;
+  std::vector<Camera> cameras;  ///< Those that see it (Estimate::cameras).
   /// Whether loads or resultants tell the unit of E.  Displacements alone tell
   /// its ratios: the map is then for a homogeneous start of E = 1.
   bool is_scale_known = true;

@@ -185,6 +185,7 @@ class MapBuilder {
     map_.status = Status::kOk;
     map_.displacement_residual = model_.RelativeResidual();
     map_.fitted_displacement = model_.FittedDisplacement();
+    map_.cameras = model_.Cameras();
     Judge();
     EnterWork();
     return map_;

@@ -59,6 +59,10 @@ class FieldSensitivity {
   /// Returns the displacement with the motions that were found: num_dofs x
   /// num_load_cases; empty where no motion is unknown.
   Eigen::MatrixXd FittedDisplacement() const;
+  /// Returns the cameras that see it (MotionElimination::Cameras).
+  std::vector<Camera> Cameras() const {
+    return motion_ ? motion_->Cameras() : std::vector<Camera>();
+  }
   /// Returns S V for num_elements x n: num_rows x n.
   Eigen::MatrixXd Multiply(const Eigen::MatrixXd& v);
   /// Returns S^T W for rows W that Eliminate has been applied to, as those of

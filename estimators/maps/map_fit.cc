@@ -31,6 +31,7 @@ Estimate FitMap(const Scene& scene, const EstimatorOptions& options) {
   estimate.noise_sd = map.noise_sd;
   estimate.displacement_residual = map.displacement_residual;
   estimate.fitted_displacement = map.fitted_displacement;
+  estimate.cameras = map.cameras;
   estimate.map = map;
   return estimate;
 }

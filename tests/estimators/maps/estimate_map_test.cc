@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "elastimate/core/scene/camera.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/estimators/maps/map_scenes.h"
 #include "tests/throws.h"
@@ -42,6 +44,33 @@ TEST(EstimateMap, SaysThatAHomogeneousBodyIsOne) {
       EXPECT_NEAR(map.poisson_ratio, 0.3, 4 * std::sqrt(map.covariance(1, 1)));
     }
   }
+}
+
+TEST(EstimateMap, FindsTheCameraThatTurned) {
+  MapScene truth = MakeMapScene("inc5", kQuads, 12, 0.01);
+  Scene& scene = truth.scene;
+  // A body that is so stiff that it hardly moves.
+  constexpr double kStiffness = 1e3;
+  LoadCase& load_case = scene.load_cases[0];
+  load_case.displacement /= kStiffness;
+  if (load_case.noise_sd) {
+    *load_case.noise_sd /= kStiffness;
+  }
+  const Camera camera = {Eigen::Rotation2Dd(0.5).toRotationMatrix(),
+                         Eigen::Vector2d(0.2, -0.1)};
+  load_case.displacement =
+      camera.SeenDisplacement(scene.mesh, load_case.displacement.reshaped())
+          .reshaped(2, scene.mesh.NumNodes());
+  scene.is_rigid_motion_free = true;
+  const MapEstimate map = EstimateMap(scene, {});
+  ASSERT_TRUE(map.IsUsable());
+  EXPECT_LT(ErrorOf(map, truth), 0.05);
+  ASSERT_EQ(map.cameras.size(), 1U);
+  EXPECT_NEAR(map.cameras[0].Angle(), 0.5, 1e-3);
+  const Eigen::MatrixXd seen =
+      SeenDisplacements(scene.mesh, map.fitted_displacement, map.cameras);
+  EXPECT_LT((seen - load_case.displacement.reshaped()).norm(),
+            1.1 * truth.noise_sd / kStiffness * std::sqrt(double(seen.size())));
 }
 
 TEST(EstimateMap, FindsInclusions) {
