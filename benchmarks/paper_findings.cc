@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/estimators/interface/statistics.h"
+#include "benchmarks/quantile.h"
 
 namespace elastimate {
 namespace {
@@ -45,7 +45,7 @@ std::vector<double> Errors(const PaperTrials& trials, bool of_reduced_fe,
 
 double MedianError(const PaperTrials& trials, bool of_reduced_fe,
                    double setting, Error error) {
-  return Median(Errors(trials, of_reduced_fe, setting, error));
+  return Quantile(Errors(trials, of_reduced_fe, setting, error), 0.5);
 }
 
 // Returns the error that this share of the trials does not exceed in absolute
