@@ -141,6 +141,9 @@ void UseBlasKernelsOfProcessor(char** argv) {
       __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
   setenv(kVariable, has_avx512 ? "SkylakeX" : "Haswell", 1);
+  // A thread that waits busily takes the processor of the one that it waits
+  // for where other programs run.
+  setenv("OMP_WAIT_POLICY", "passive", 0);
   // Where it cannot be started anew, it goes on with those kernels.
   execv("/proc/self/exe", argv);
 }

@@ -27,14 +27,15 @@ constexpr std::chrono::milliseconds kPollInterval{5};
   const rlimit limit = {rlim_t(processor_seconds),
                         rlim_t(processor_seconds) + 1};
   setrlimit(RLIMIT_CPU, &limit);
+  const auto send = [pipe](const std::string& text) {
+    return write(pipe, text.data(), text.size()) == ssize_t(text.size());
+  };
   try {
-    const std::string output = work();
-    const bool is_written =
-        write(pipe, output.data(), output.size()) == ssize_t(output.size());
-    _exit(is_written ? 0 : kFailed);
+    _exit(send(work()) ? 0 : kFailed);
   } catch (const std::bad_alloc&) {
     _exit(kOutOfMemory);
-  } catch (const std::exception&) {
+  } catch (const std::exception& error) {
+    send(error.what());
     _exit(kFailed);
   }
 }
@@ -94,7 +95,8 @@ ProcessReport RunInChildProcess(const ProcessLimits& limits,
   } else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     report.outcome = ProcessOutcome::kTimeLimit;
   } else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error("a child process of the study failed");
+    throw std::runtime_error("a child process of the study failed: " +
+                             report.output);
   }
   return report;
 }

@@ -228,7 +228,7 @@ void RefinedSolve(benchmark::State& state) {
 Scene MeasuredCube(std::int64_t cells, double noise) {
   Scene scene = Cube(cells);
   const Eigen::VectorXd displacement =
-      DisplacementsAt(scene, Eigen::Vector2d(1e4, 0.3));
+      DisplacementsAt(scene, Eigen::Vector2d(1e8, 0.3));
   const DegreesOfFreedom dofs(scene.supports);
   const Eigen::VectorXd random =
       dofs.Extend(RandomMatrix(dofs.NumFree(), 1, kSeed));

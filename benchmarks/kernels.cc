@@ -18,7 +18,7 @@
 
 #include "apps/linear_algebra.h"
 #include "benchmarks/machine_limits.h"
-#include "benchmarks/measured_cube.h"
+#include "benchmarks/measured_body.h"
 #include "benchmarks/naive_stiffness_product.h"
 #include "benchmarks/random_matrix.h"
 #include "elastimate/core/mechanics/internal_forces.h"
@@ -143,6 +143,12 @@ void TimeInTurns(std::vector<Kernel>& kernels, Progress& progress,
   }
 }
 
+void RequireUsable(const Estimate& estimate) {
+  if (!estimate.IsUsable()) {
+    throw std::logic_error(estimate.message);
+  }
+}
+
 // Owns everything that the kernels of one size work on.
 class Cube {
  public:
@@ -185,7 +191,7 @@ class Cube {
     AddCombination(kernels);
     kernels.push_back(
         {"closed-form", "natural", 1, 1, {kUnknown, kUnknown}, [&] {
-           static_cast<void>(closed_form_->Run(scene_, {}));
+           RequireUsable(closed_form_->Run(scene_, {}));
          }});
     AddFurtherMeasurements(kernels);
     return kernels;
@@ -205,15 +211,15 @@ class Cube {
       estimators_.push_back(MakeEstimator(name));
       const auto prepared = std::make_shared<PreparedEstimator>(
           estimators_.back()->Prepare(scene_, {}));
-      kernels.push_back({"further " + name,
-                         "natural",
-                         1,
-                         1,
-                         {kUnknown, kUnknown},
-                         [this, prepared] {
-                           static_cast<void>(prepared->Run(
-                               {scene_.load_cases[0].displacement}));
-                         }});
+      kernels.push_back(
+          {"further " + name,
+           "natural",
+           1,
+           1,
+           {kUnknown, kUnknown},
+           [this, prepared] {
+             RequireUsable(prepared->Run({scene_.load_cases[0].displacement}));
+           }});
     }
   }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "apps/flag_parser.h"
+#include "apps/linear_algebra.h"
 #include "apps/progress.h"
 #include "benchmarks/kernels.h"
 #include "benchmarks/large_deformation_study.h"
@@ -226,6 +227,7 @@ int Run(const std::vector<std::string>& words) {
 }  // namespace elastimate
 
 int main(int argc, char** argv) {
+  elastimate::UseBlasKernelsOfProcessor(argv);
   // The status of an estimate says what Ceres would have warned of.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;

@@ -347,24 +347,26 @@ def speed_accuracy_points(path):
 
 def scaling(path):
     rows = read(path)
-    slopes = {row["estimator"]: row for row in read(path.with_name("scaling_slopes.csv"))}
+    slopes = {(row["estimator"], row["body"]): row
+              for row in read(path.with_name("scaling_slopes.csv"))}
     with open(path.with_name("scaling.json"), encoding="utf-8") as file:
         parameters = json.load(file)["parameters"]
     figure, panels = two_panels(4)
-    quantities = (("processor_time [s]", "processor_time_slope [1]", "time_limit",
-                   parameters["limit_of_processor_time [s]"]),
+    quantities = (("time [s]", "time_slope [1]", "time_limit",
+                   parameters["limit_of_processor_time [s]"] / parameters["threads"]),
                   ("own_memory [MiB]", "own_memory_slope [1]", "memory_limit",
                    parameters["limit_of_memory [MiB]"]))
     for axes, (quantity, slope, outcome, limit) in zip(panels, quantities):
-        for (name,), own in group(rows, "estimator").items():
+        for (name, body), own in group(rows, "estimator", "body").items():
             size = numbers(own, "tetrahedra [1]")
-            exponents = [slopes[name][q[1]] for q in quantities]
+            exponents = [slopes[name, body][q[1]] for q in quantities]
             text = ", ".join(f"{what} {float(exponent):.2f}" if exponent else f"{what} ?"
                              for what, exponent in zip(("time", "memory"), exponents))
+            line = {} if body == "cube" else {"linestyle": "--", "markerfacecolor": "w"}
             value = numbers(own, quantity)
             shown = (value > 0) & np.array([row["outcome"] == "measured" for row in own])
-            axes.plot(size[shown], value[shown], label=f"{name}: slopes {text}",
-                      **{**STYLES[name], "markeredgecolor": "k", "markeredgewidth": 0.3})
+            axes.plot(size[shown], value[shown], label=f"{name}, {body}: slopes {text}",
+                      **{**STYLES[name], "markeredgecolor": "k", "markeredgewidth": 0.3, **line})
             stopped = np.array([row["outcome"] == outcome for row in own])
             axes.plot(size[stopped], np.full(np.sum(stopped), limit), "x", markersize=8,
                       color=STYLES[name]["color"], markeredgewidth=2)
@@ -373,9 +375,9 @@ def scaling(path):
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlabel("tetrahedra [1]")
-    panels[0].set_ylabel("processor time [s]")
+    panels[0].set_ylabel("time [s]")
     panels[1].set_ylabel("peak memory beyond that of the scene [MiB]")
-    finish(figure, "Cube, noise of 1 %, one BLAS thread")
+    finish(figure, "Cube and organ, noise of 1 %")
     return figure
 
 

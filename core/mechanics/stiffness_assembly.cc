@@ -75,26 +75,4 @@ Eigen::VectorXd StiffnessAssembly::ValuesOf(
   return values;
 }
 
-Eigen::MatrixXd MultiplySymmetric(const SymmetricPattern& pattern,
-                                  const Eigen::VectorXd& values,
-                                  const Eigen::MatrixXd& x) {
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(x.rows(), x.cols());
-  for (Eigen::Index n = 0; n < x.cols(); ++n) {
-    const double* const from = x.col(n).data();
-    double* const to = products.col(n).data();
-    for (std::int64_t j = 0; j < pattern.Size(); ++j) {
-      // The first entry of each column is on the diagonal.
-      std::int64_t k = pattern.column_start[j];
-      double sum = values(k) * from[j];
-      for (++k; k < pattern.column_start[j + 1]; ++k) {
-        const std::int64_t i = pattern.row[k];
-        to[i] += values(k) * from[j];
-        sum += values(k) * from[i];
-      }
-      to[j] += sum;
-    }
-  }
-  return products;
-}
-
 }  // namespace elastimate

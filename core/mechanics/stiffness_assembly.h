@@ -22,11 +22,6 @@ struct SymmetricPattern {
   }
 };
 
-/// Returns A X for the symmetric matrix of these values, size x n.
-[[nodiscard]] Eigen::MatrixXd MultiplySymmetric(const SymmetricPattern& pattern,
-                                                const Eigen::VectorXd& values,
-                                                const Eigen::MatrixXd& x);
-
 /// The stiffness bases H and J of the free degrees of freedom, assembled into
 /// one fixed sparse pattern, so that A(nu) = H + nu J is one axpy.
 class StiffnessAssembly {

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
@@ -13,7 +15,7 @@
 namespace elastimate {
 namespace {
 
-constexpr Eigen::Index kMostPoints = 4000;
+constexpr std::size_t kMostPoints = 2000;
 constexpr Eigen::Index kVolumePoints = 1000;
 constexpr int kLargestDegree = 4;
 // So many observed values are needed for each coefficient of a polynomial, so
@@ -30,56 +32,70 @@ constexpr int kNeighbours = 4;
 // kink of the displacement, too.
 constexpr double kStray = 8;
 
-double MedianOf(const Eigen::VectorXd& values) {
+double MedianOf(const Eigen::ArrayXd& values) {
   return Median(std::vector<double>(values.begin(), values.end()));
 }
 
-// The observations of each component: positions, dimension x n, and values.
+// Displacements of components that were observed at the same places: positions,
+// dimension x n, and values, n x num_components.
 struct Observed {
+  std::vector<int> components;
   Eigen::MatrixXd positions;
-  Eigen::VectorXd values;
+  Eigen::MatrixXd values;
 };
 
-Eigen::MatrixXd PositionsOfPoints(const Scene& scene,
-                                  const LoadCase& load_case) {
-  return Interpolate(scene.mesh, load_case.points.points, scene.mesh.nodes);
+// Returns where a component was observed, or a sample of it: numbers of nodes,
+// and the number of nodes plus those of points.
+std::vector<Eigen::Index> ObservedPlaces(const Mesh& mesh,
+                                         const LoadCase& load_case,
+                                         int component) {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index node = 0;
+       load_case.displacement.size() != 0 && node < mesh.NumNodes(); ++node) {
+    if (IsObserved(load_case, component, node)) {
+      places.push_back(node);
+    }
+  }
+  for (Eigen::Index i = 0; i < load_case.points.displacement.cols(); ++i) {
+    if (!std::isnan(load_case.points.displacement(component, i))) {
+      places.push_back(mesh.NumNodes() + i);
+    }
+  }
+  const std::size_t stride =
+      std::max<std::size_t>(1, places.size() / kMostPoints);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < places.size(); i += stride) {
+    places[count++] = places[i];
+  }
+  places.resize(count);
+  return places;
 }
 
-Observed ObservedComponent(const Scene& scene, const LoadCase& load_case,
-                           const Eigen::MatrixXd& points, int component) {
-  std::vector<Eigen::Index> nodes;
-  for (Eigen::Index node = 0;
-       load_case.displacement.size() != 0 && node < scene.mesh.NumNodes();
-       ++node) {
-    if (IsObserved(load_case, component, node)) {
-      nodes.push_back(node);
-    }
+// Returns the observations, of components together whose places are alike, so
+// that what depends on places only is computed once.
+std::vector<Observed> ObservedValues(const Mesh& mesh,
+                                     const LoadCase& load_case,
+                                     const Eigen::MatrixXd& points) {
+  std::map<std::vector<Eigen::Index>, std::vector<int>> components;
+  for (int i = 0; i < mesh.Dimension(); ++i) {
+    components[ObservedPlaces(mesh, load_case, i)].push_back(i);
   }
-  std::vector<Eigen::Index> others;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (!std::isnan(load_case.points.displacement(component, i))) {
-      others.push_back(i);
+  std::vector<Observed> all;
+  for (const auto& [places, alike] : components) {
+    const auto count = Eigen::Index(places.size());
+    Observed observed = {alike, Eigen::MatrixXd(mesh.Dimension(), count),
+                         Eigen::MatrixXd(count, Eigen::Index(alike.size()))};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const bool is_node = places[i] < mesh.NumNodes();
+      const Eigen::Index at = places[i] - (is_node ? 0 : mesh.NumNodes());
+      observed.positions.col(i) = is_node ? mesh.nodes.col(at) : points.col(at);
+      observed.values.row(i) =
+          (is_node ? load_case.displacement : load_case.points.displacement)(
+              alike, at);
     }
+    all.push_back(std::move(observed));
   }
-  const auto num_nodes = Eigen::Index(nodes.size());
-  const Eigen::Index all = num_nodes + Eigen::Index(others.size());
-  const Eigen::Index stride = std::max<Eigen::Index>(1, all / kMostPoints);
-  const Eigen::Index count = (all + stride - 1) / stride;
-  Observed observed = {Eigen::MatrixXd(scene.mesh.Dimension(), count),
-                       Eigen::VectorXd(count)};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index at = i * stride;
-    if (at < num_nodes) {
-      const Eigen::Index node = nodes[at];
-      observed.positions.col(i) = scene.mesh.nodes.col(node);
-      observed.values(i) = load_case.displacement(component, node);
-    } else {
-      const Eigen::Index point = others[at - num_nodes];
-      observed.positions.col(i) = points.col(point);
-      observed.values(i) = load_case.points.displacement(component, point);
-    }
-  }
-  return observed;
+  return all;
 }
 
 // Returns the exponents of the monomials of degree <= `degree`.
@@ -95,13 +111,12 @@ std::vector<Eigen::Array3i> ExponentsUpTo(int degree, Eigen::Index dimension) {
   return exponents;
 }
 
-// Returns the product of the powers of the coordinates, without that of
-// `left_out`.
-Eigen::ArrayXd Powers(const Eigen::MatrixXd& x, const Eigen::Array3i& exponents,
-                      Eigen::Index left_out) {
+// Returns the product of the powers of the coordinates.
+Eigen::ArrayXd Powers(const Eigen::MatrixXd& x,
+                      const Eigen::Array3i& exponents) {
   Eigen::ArrayXd product = Eigen::ArrayXd::Ones(x.cols());
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    for (int power = 0; i != left_out && power < exponents(i); ++power) {
+    for (int power = 0; power < exponents(i); ++power) {
       product *= x.row(i).transpose().array();
     }
   }
@@ -125,15 +140,16 @@ struct Frame {
   Eigen::VectorXd scale;
 };
 
-// Returns the gradient of the polynomial of least squares, dimension x
-// num_points; empty where there are too few values.
-Eigen::MatrixXd GradientAt(const Frame& frame, const Observed& observed,
-                           const Eigen::MatrixXd& points) {
+// Returns the gradients of the polynomials of least squares, dimension x
+// num_points for each component; none where there are too few values.
+std::vector<Eigen::MatrixXd> GradientsAt(const Frame& frame,
+                                         const Observed& observed,
+                                         const Eigen::MatrixXd& points) {
   const Eigen::Index dimension = points.rows();
   int degree = kLargestDegree;
   std::vector<Eigen::Array3i> exponents = ExponentsUpTo(degree, dimension);
   while (degree > 0 && kValuesPerMonomial * Eigen::Index(exponents.size()) >
-                           observed.values.size()) {
+                           observed.values.rows()) {
     exponents = ExponentsUpTo(--degree, dimension);
   }
   if (degree == 0) {
@@ -143,33 +159,37 @@ Eigen::MatrixXd GradientAt(const Frame& frame, const Observed& observed,
   const Eigen::MatrixXd x = frame.Coordinates(observed.positions);
   Eigen::MatrixXd monomials(x.cols(), num_monomials);
   for (Eigen::Index m = 0; m < num_monomials; ++m) {
-    monomials.col(m) = Powers(x, exponents[m], -1);
+    monomials.col(m) = Powers(x, exponents[m]);
   }
-  const Eigen::VectorXd coefficients =
+  const Eigen::MatrixXd coefficients =
       SolveLeastSquares(monomials, observed.values, kDependent);
   const Eigen::MatrixXd at = frame.Coordinates(points);
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(dimension, points.cols());
+  std::vector<Eigen::MatrixXd> gradients(
+      observed.components.size(),
+      Eigen::MatrixXd::Zero(dimension, points.cols()));
   for (Eigen::Index m = 0; m < num_monomials; ++m) {
-    const Eigen::Array3i& powers = exponents[m];
     for (Eigen::Index j = 0; j < dimension; ++j) {
-      if (powers(j) > 0) {
-        const Eigen::ArrayXd along =
-            powers(j) * at.row(j).transpose().array().pow(powers(j) - 1);
-        gradient.row(j) +=
-            (coefficients(m) / frame.scale(j) * along * Powers(at, powers, j))
-                .matrix()
-                .transpose();
+      const int power = exponents[m](j);
+      if (power == 0) {
+        continue;
+      }
+      Eigen::Array3i lower = exponents[m];
+      --lower(j);
+      const Eigen::RowVectorXd slope =
+          power / frame.scale(j) * Powers(at, lower).matrix().transpose();
+      for (std::size_t i = 0; i < gradients.size(); ++i) {
+        gradients[i].row(j) += coefficients(m, Eigen::Index(i)) * slope;
       }
     }
   }
-  return gradient;
+  return gradients;
 }
 
 // Returns the values minus those of the affine function of least squares.
-Eigen::VectorXd WithoutAffinePart(const Frame& frame,
+Eigen::MatrixXd WithoutAffinePart(const Frame& frame,
                                   const Observed& observed) {
-  Eigen::MatrixXd affine(observed.values.size(), observed.positions.rows() + 1);
-  affine << Eigen::VectorXd::Ones(observed.values.size()),
+  Eigen::MatrixXd affine(observed.values.rows(), observed.positions.rows() + 1);
+  affine << Eigen::VectorXd::Ones(observed.values.rows()),
       frame.Coordinates(observed.positions).transpose();
   return observed.values -
          affine * SolveLeastSquares(affine, observed.values, kDependent);
@@ -186,34 +206,45 @@ std::vector<std::vector<Eigen::Index>> NeighboursOf(
   return neighbours;
 }
 
-// Leaves out values that disagree with the values of their neighbours by far
-// more than these do among themselves, as in the normalised median test of
-// Westerweel & Scarano (Exp. Fluids 39 (2005) 1096): gross errors, each of
-// which would bend the polynomials.  A deformation, however local, is one of
-// several neighbours.
-Observed WithoutStrayValues(const Frame& frame, const Observed& observed) {
-  const Eigen::Index num_values = observed.values.size();
-  if (num_values <= kNeighbours * observed.positions.rows()) {
-    return observed;
-  }
-  const Eigen::VectorXd rest = WithoutAffinePart(frame, observed);
-  const auto neighbours = NeighboursOf(observed.positions);
-  Eigen::VectorXd difference(num_values);
-  Eigen::VectorXd spread(num_values);
-  for (Eigen::Index i = 0; i < num_values; ++i) {
-    const Eigen::VectorXd around = rest(neighbours[i]);
+// Tells which values disagree with the values of their neighbours by far more
+// than these do among themselves, as in the normalised median test of
+// Westerweel & Scarano (Exp. Fluids 39 (2005) 1096).
+Eigen::Array<bool, Eigen::Dynamic, 1> AreStray(
+    const Eigen::VectorXd& values,
+    const std::vector<std::vector<Eigen::Index>>& neighbours) {
+  Eigen::ArrayXd difference(values.size());
+  Eigen::ArrayXd spread(values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const Eigen::VectorXd around = values(neighbours[i]);
     const double middle = MedianOf(around);
-    difference(i) = std::abs(rest(i) - middle);
+    difference(i) = std::abs(values(i) - middle);
     spread(i) = MedianOf((around.array() - middle).abs());
   }
-  const double usual = MedianOf(difference);
+  return difference > kStray * (spread + MedianOf(difference));
+}
+
+// Leaves out places with a gross error in a component, which would bend the
+// polynomials.  A deformation, however local, is one of several neighbours.
+Observed WithoutStrayValues(const Frame& frame, const Observed& observed) {
+  const Eigen::Index num_places = observed.values.rows();
+  if (num_places <= kNeighbours * observed.positions.rows()) {
+    return observed;
+  }
+  const Eigen::MatrixXd rest = WithoutAffinePart(frame, observed);
+  const auto neighbours = NeighboursOf(observed.positions);
+  Eigen::Array<bool, Eigen::Dynamic, 1> is_stray =
+      AreStray(rest.col(0), neighbours);
+  for (Eigen::Index i = 1; i < rest.cols(); ++i) {
+    is_stray = is_stray || AreStray(rest.col(i), neighbours);
+  }
   std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < num_values; ++i) {
-    if (difference(i) <= kStray * (spread(i) + usual)) {
+  for (Eigen::Index i = 0; i < num_places; ++i) {
+    if (!is_stray(i)) {
       kept.push_back(i);
     }
   }
-  return {observed.positions(Eigen::all, kept), observed.values(kept)};
+  return {observed.components, observed.positions(Eigen::all, kept),
+          observed.values(kept, Eigen::all)};
 }
 
 struct Polar {
@@ -254,25 +285,29 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
                                                   const LoadCase& load_case) {
   const int dimension = scene.mesh.Dimension();
   const Frame frame(scene.mesh);
-  const Eigen::MatrixXd points = load_case.points.points.Size() == 0
-                                     ? Eigen::MatrixXd(dimension, 0)
-                                     : PositionsOfPoints(scene, load_case);
+  const Eigen::MatrixXd points =
+      load_case.points.points.Size() == 0
+          ? Eigen::MatrixXd(dimension, 0)
+          : Interpolate(scene.mesh, load_case.points.points, scene.mesh.nodes);
   std::vector<Eigen::MatrixXd> gradients;
   Eigen::MatrixXd at;
-  for (int component = 0; component < dimension; ++component) {
-    const Observed observed = WithoutStrayValues(
-        frame, ObservedComponent(scene, load_case, points, component));
-    if (component == 0) {
+  for (const Observed& all : ObservedValues(scene.mesh, load_case, points)) {
+    const Observed observed = WithoutStrayValues(frame, all);
+    if (at.size() == 0) {
       at = PointsOfTheVolume(scene, load_case, points, observed);
       gradients.assign(static_cast<std::size_t>(at.cols()),
                        Eigen::MatrixXd::Identity(dimension, dimension));
     }
-    const Eigen::MatrixXd gradient = GradientAt(frame, observed, at);
-    if (gradient.size() == 0) {
+    const std::vector<Eigen::MatrixXd> of_components =
+        GradientsAt(frame, observed, at);
+    if (of_components.empty()) {
       return {};
     }
-    for (Eigen::Index i = 0; i < at.cols(); ++i) {
-      gradients[i].row(component) += gradient.col(i).transpose();
+    for (std::size_t c = 0; c < of_components.size(); ++c) {
+      for (Eigen::Index i = 0; i < at.cols(); ++i) {
+        gradients[i].row(observed.components[c]) +=
+            of_components[c].col(i).transpose();
+      }
     }
   }
   return gradients;

@@ -41,15 +41,13 @@ Eigen::SparseMatrix<double> Sparse(const BlockMatrix& a) {
 
 }  // namespace
 
-AlgebraicMultigrid::AlgebraicMultigrid(const StiffnessAssembly& assembly,
-                                       FindSpaces find_spaces)
-    : assembly_(assembly), find_spaces_(std::move(find_spaces)) {}
+AlgebraicMultigrid::AlgebraicMultigrid(FindSpaces find_spaces)
+    : find_spaces_(std::move(find_spaces)) {}
 
 bool AlgebraicMultigrid::Factorize(const Eigen::VectorXd& values) {
   cycle_.clear();
   restrictions_.clear();
   spaces_ = {};  // Its memory is needed.
-  values_ = &values;
   smallest_eigenvalue_ = 1;
   return values.allFinite() && find_spaces_(values, spaces_) &&
          FactorizeCoarsest() && SetUpCycle();
@@ -100,37 +98,33 @@ bool AlgebraicMultigrid::SetUpCycle() {
   return true;
 }
 
-Eigen::MatrixXd AlgebraicMultigrid::Precondition(
-    const Eigen::MatrixXd& forces) const {
-  Eigen::MatrixXd all =
-      Eigen::MatrixXd::Zero(spaces_.matrices.back().NumRows(), forces.cols());
-  all(spaces_.row_of_free, Eigen::all) = forces;
-  return VCycle(
-      cycle_,
-      [&](const Eigen::MatrixXd& x) {
-        return Eigen::MatrixXd(coarsest_.solve(x));
-      },
-      all)(spaces_.row_of_free, Eigen::all);
-}
-
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
     const Eigen::MatrixXd& right_hand_sides, double tolerance) {
+  const BlockMatrix& finest = spaces_.matrices.back();
+  Eigen::MatrixXd forces =
+      Eigen::MatrixXd::Zero(finest.NumRows(), right_hand_sides.cols());
+  forces(spaces_.row_of_free, Eigen::all) = right_hand_sides;
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
-  ConjugateGradientResult result = SolveByConjugateGradients(
+  const ConjugateGradientResult result = SolveByConjugateGradients(
+      [&](const Eigen::MatrixXd& x) { return MultiplyAccurately(finest, x); },
       [&](const Eigen::MatrixXd& x) {
-        return MultiplySymmetric(assembly_.Pattern(), *values_, x);
+        return VCycle(
+            cycle_,
+            [&](const Eigen::MatrixXd& coarsest) {
+              return Eigen::MatrixXd(coarsest_.solve(coarsest));
+            },
+            x);
       },
-      [&](const Eigen::MatrixXd& x) { return Precondition(x); },
-      right_hand_sides, {}, options);
+      forces, {}, options);
   num_iterations_ += result.iterations;
   if (!result.has_converged) {
     return std::nullopt;
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
-  return std::move(result.solution);
+  return result.solution(spaces_.row_of_free, Eigen::all);
 }
 
 }  // namespace elastimate

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/solvers/linear_solver.h"
 #include "elastimate/core/solvers/multigrid_spaces.h"
 #include "elastimate/core/solvers/v_cycle.h"
@@ -28,8 +27,7 @@ class AlgebraicMultigrid : public LinearSolver {
   using FindSpaces =
       std::function<bool(const Eigen::VectorXd& values, MultigridSpaces&)>;
 
-  /// `assembly` must outlive this object.
-  AlgebraicMultigrid(const StiffnessAssembly& assembly, FindSpaces find_spaces);
+  explicit AlgebraicMultigrid(FindSpaces find_spaces);
 
   bool Factorize(const Eigen::VectorXd& values) override;
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
@@ -39,12 +37,8 @@ class AlgebraicMultigrid : public LinearSolver {
  private:
   bool SetUpCycle();
   bool FactorizeCoarsest();
-  /// Runs a V-cycle for forces on the free degrees of freedom.
-  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& forces) const;
 
-  const StiffnessAssembly& assembly_;
   FindSpaces find_spaces_;
-  const Eigen::VectorXd* values_ = nullptr;
   MultigridSpaces spaces_;
   std::vector<BlockMatrix> restrictions_;  ///< The interpolations, transposed.
   std::vector<CycleSpace> cycle_;

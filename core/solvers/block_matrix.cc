@@ -21,18 +21,22 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // The products of one row of blocks with kOfX columns of X, which are `stride`
 // apart.
-template <int kRows, int kColumns, int kOfX>
+template <bool kWithRest, int kRows, int kColumns, int kOfX>
 HWY_INLINE void MultiplyRow(const BlockMatrix& a, Eigen::Index i,
                             const double* x, Eigen::Index stride,
                             double (&sums)[kOfX][kRows]) {
   std::fill_n(&sums[0][0], kOfX * kRows, 0.0);
   for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
-    const float* const entries = a.entries.data() + k * kRows * kColumns;
+    const Eigen::Index first = k * kRows * kColumns;
     const double* const values = x + Eigen::Index{a.column[k]} * kColumns;
     for (int c = 0; c < kColumns; ++c) {
       for (int r = 0; r < kRows; ++r) {
+        double entry = a.entries[first + c * kRows + r];
+        if constexpr (kWithRest) {
+          entry += double{a.rest[first + c * kRows + r]};
+        }
         for (int n = 0; n < kOfX; ++n) {
-          sums[n][r] += double{entries[c * kRows + r]} * values[n * stride + c];
+          sums[n][r] += entry * values[n * stride + c];
         }
       }
     }
@@ -42,29 +46,39 @@ HWY_INLINE void MultiplyRow(const BlockMatrix& a, Eigen::Index i,
 #if HWY_CAP_GE256 && !HWY_HAVE_SCALABLE
 // Does the same with vectors of four rows, of which the last ones read entries
 // behind the column, or behind the block.
-template <int kRows, int kColumns, int kOfX>
+template <bool kWithRest, int kRows, int kColumns, int kOfX>
 HWY_INLINE void MultiplyRowByVectors(const BlockMatrix& a, Eigen::Index i,
                                      const double* x, Eigen::Index stride,
                                      double (&sums)[kOfX][kRows]) {
   constexpr int kVectors = (kRows + 3) / 4;
+  // One column alone would wait for each sum before it adds to it.
+  constexpr int kChains = kOfX == 1 ? 3 : 1;
   const hn::FixedTag<double, 4> d;
   const hn::FixedTag<float, 4> of_entries;
-  hn::Vec<decltype(d)> sum[kOfX][kVectors];
+  hn::Vec<decltype(d)> sum[kOfX][kVectors][kChains];
   for (int n = 0; n < kOfX; ++n) {
     for (int v = 0; v < kVectors; ++v) {
-      sum[n][v] = hn::Zero(d);
+      for (int chain = 0; chain < kChains; ++chain) {
+        sum[n][v][chain] = hn::Zero(d);
+      }
     }
   }
   for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
-    const float* const entries = a.entries.data() + k * kRows * kColumns;
+    const Eigen::Index first = k * kRows * kColumns;
     const double* const values = x + Eigen::Index{a.column[k]} * kColumns;
     for (int c = 0; c < kColumns; ++c) {
       for (int v = 0; v < kVectors; ++v) {
-        const auto entry = hn::PromoteTo(
-            d, hn::LoadU(of_entries, entries + c * kRows + 4 * v));
+        const Eigen::Index at = first + c * kRows + 4 * v;
+        auto entry =
+            hn::PromoteTo(d, hn::LoadU(of_entries, a.entries.data() + at));
+        if constexpr (kWithRest) {
+          entry = hn::Add(
+              entry,
+              hn::PromoteTo(d, hn::LoadU(of_entries, a.rest.data() + at)));
+        }
         for (int n = 0; n < kOfX; ++n) {
-          sum[n][v] =
-              hn::MulAdd(entry, hn::Set(d, values[n * stride + c]), sum[n][v]);
+          auto& chain = sum[n][v][c % kChains];
+          chain = hn::MulAdd(entry, hn::Set(d, values[n * stride + c]), chain);
         }
       }
     }
@@ -72,14 +86,18 @@ HWY_INLINE void MultiplyRowByVectors(const BlockMatrix& a, Eigen::Index i,
   for (int n = 0; n < kOfX; ++n) {
     double all[4 * kVectors];
     for (int v = 0; v < kVectors; ++v) {
-      hn::StoreU(sum[n][v], d, all + 4 * v);
+      auto total = sum[n][v][0];
+      for (int chain = 1; chain < kChains; ++chain) {
+        total = hn::Add(total, sum[n][v][chain]);
+      }
+      hn::StoreU(total, d, all + 4 * v);
     }
     std::copy_n(all, kRows, sums[n]);
   }
 }
 #endif
 
-template <int kRows, int kColumns, int kOfX>
+template <bool kWithRest, int kRows, int kColumns, int kOfX>
 HWY_INLINE void MultiplyColumns(const BlockMatrix& a, Eigen::Index i,
                                 const Eigen::MatrixXd& x, Eigen::Index first,
                                 Eigen::MatrixXd& products) {
@@ -88,12 +106,13 @@ HWY_INLINE void MultiplyColumns(const BlockMatrix& a, Eigen::Index i,
 #if HWY_CAP_GE256 && !HWY_HAVE_SCALABLE
   // Nothing may be read behind the last of all blocks.
   if (kRows >= 3 && i + 1 < a.NumBlockRows()) {
-    MultiplyRowByVectors<kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
+    MultiplyRowByVectors<kWithRest, kRows, kColumns, kOfX>(a, i, from, x.rows(),
+                                                           sums);
   } else {
-    MultiplyRow<kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
+    MultiplyRow<kWithRest, kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
   }
 #else
-  MultiplyRow<kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
+  MultiplyRow<kWithRest, kRows, kColumns, kOfX>(a, i, from, x.rows(), sums);
 #endif
   for (int n = 0; n < kOfX; ++n) {
     std::copy_n(sums[n], kRows,
@@ -101,7 +120,7 @@ HWY_INLINE void MultiplyColumns(const BlockMatrix& a, Eigen::Index i,
   }
 }
 
-template <int kRows, int kColumns>
+template <bool kWithRest, int kRows, int kColumns>
 HWY_INLINE void MultiplyRows(const BlockMatrix& a, Eigen::Index begin,
                              Eigen::Index end, const Eigen::MatrixXd& x,
                              Eigen::MatrixXd& products) {
@@ -110,36 +129,51 @@ HWY_INLINE void MultiplyRows(const BlockMatrix& a, Eigen::Index begin,
   for (Eigen::Index i = begin; i < end; ++i) {
     Eigen::Index column = 0;
     for (; column + kAtOnce <= x.cols(); column += kAtOnce) {
-      MultiplyColumns<kRows, kColumns, kAtOnce>(a, i, x, column, products);
+      MultiplyColumns<kWithRest, kRows, kColumns, kAtOnce>(a, i, x, column,
+                                                           products);
     }
     for (; column < x.cols(); ++column) {
-      MultiplyColumns<kRows, kColumns, 1>(a, i, x, column, products);
+      MultiplyColumns<kWithRest, kRows, kColumns, 1>(a, i, x, column, products);
     }
   }
 }
 
-void MultiplyRowsOfAnySize(const BlockMatrix& a, Eigen::Index begin,
-                           Eigen::Index end, const Eigen::MatrixXd& x,
-                           Eigen::MatrixXd& products) {
+template <bool kWithRest>
+HWY_INLINE void MultiplyRowsOfAnySize(const BlockMatrix& a, Eigen::Index begin,
+                                      Eigen::Index end,
+                                      const Eigen::MatrixXd& x,
+                                      Eigen::MatrixXd& products) {
   const std::pair size(a.block_rows, a.block_columns);
   if (size == std::pair(3, 3)) {
-    MultiplyRows<3, 3>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 3, 3>(a, begin, end, x, products);
   } else if (size == std::pair(3, 6)) {
-    MultiplyRows<3, 6>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 3, 6>(a, begin, end, x, products);
   } else if (size == std::pair(6, 3)) {
-    MultiplyRows<6, 3>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 6, 3>(a, begin, end, x, products);
   } else if (size == std::pair(6, 6)) {
-    MultiplyRows<6, 6>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 6, 6>(a, begin, end, x, products);
   } else if (size == std::pair(2, 2)) {
-    MultiplyRows<2, 2>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 2, 2>(a, begin, end, x, products);
   } else if (size == std::pair(2, 3)) {
-    MultiplyRows<2, 3>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 2, 3>(a, begin, end, x, products);
   } else if (size == std::pair(3, 2)) {
-    MultiplyRows<3, 2>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 3, 2>(a, begin, end, x, products);
   } else {
     assert(size == std::pair(1, 1));
-    MultiplyRows<1, 1>(a, begin, end, x, products);
+    MultiplyRows<kWithRest, 1, 1>(a, begin, end, x, products);
   }
+}
+
+void MultiplyRowsOnce(const BlockMatrix& a, Eigen::Index begin,
+                      Eigen::Index end, const Eigen::MatrixXd& x,
+                      Eigen::MatrixXd& products) {
+  MultiplyRowsOfAnySize<false>(a, begin, end, x, products);
+}
+
+void MultiplyRowsWithRest(const BlockMatrix& a, Eigen::Index begin,
+                          Eigen::Index end, const Eigen::MatrixXd& x,
+                          Eigen::MatrixXd& products) {
+  MultiplyRowsOfAnySize<true>(a, begin, end, x, products);
 }
 
 }  // namespace
@@ -151,9 +185,15 @@ HWY_AFTER_NAMESPACE();
 
 namespace elastimate {
 
-HWY_EXPORT(MultiplyRowsOfAnySize);
+HWY_EXPORT(MultiplyRowsOnce);
+HWY_EXPORT(MultiplyRowsWithRest);
 
-Eigen::MatrixXd Multiply(const BlockMatrix& a, const Eigen::MatrixXd& x) {
+namespace {
+
+template <class MultiplyRows>
+Eigen::MatrixXd MultiplyInParallel(const BlockMatrix& a,
+                                   const Eigen::MatrixXd& x,
+                                   const MultiplyRows& multiply_rows) {
   assert(x.rows() == a.num_columns);
   // A thread takes about as long to start as so many rows to multiply.
   constexpr Eigen::Index kRowsAtOnce = 2000;
@@ -161,10 +201,52 @@ Eigen::MatrixXd Multiply(const BlockMatrix& a, const Eigen::MatrixXd& x) {
   const Eigen::Index num_rows = a.NumBlockRows();
 #pragma omp parallel for schedule(static) if (num_rows > kRowsAtOnce)
   for (Eigen::Index begin = 0; begin < num_rows; begin += kRowsAtOnce) {
-    HWY_DYNAMIC_DISPATCH(MultiplyRowsOfAnySize)
-    (a, begin, std::min(num_rows, begin + kRowsAtOnce), x, products);
+    multiply_rows(a, begin, std::min(num_rows, begin + kRowsAtOnce), x,
+                  products);
   }
   return products;
+}
+
+}  // namespace
+
+Eigen::MatrixXd Multiply(const BlockMatrix& a, const Eigen::MatrixXd& x) {
+  return MultiplyInParallel(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsOnce));
+}
+
+Eigen::MatrixXd MultiplyAccurately(const BlockMatrix& a,
+                                   const Eigen::MatrixXd& x) {
+  assert(a.rest.size() == a.entries.size());
+  return MultiplyInParallel(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsWithRest));
+}
+
+BlockMatrix Ordered(const BlockMatrix& a, const std::vector<int>& rows,
+                    const std::vector<int>& new_columns) {
+  BlockMatrix result;
+  result.block_rows = a.block_rows;
+  result.block_columns = a.block_columns;
+  result.num_columns = a.num_columns;
+  result.start.reserve(a.start.size());
+  result.column.reserve(a.column.size());
+  result.entries.reserve(a.entries.size());
+  result.rest.reserve(a.rest.size());
+  const Eigen::Index size = Eigen::Index{a.block_rows} * a.block_columns;
+  const auto append = [size](const std::vector<float>& from, Eigen::Index k,
+                             std::vector<float>& to) {
+    to.insert(to.end(), from.begin() + size * k, from.begin() + size * (k + 1));
+  };
+  result.start.push_back(0);
+  for (const int row : rows) {
+    for (Eigen::Index k = a.start[row]; k < a.start[row + 1]; ++k) {
+      result.column.push_back(new_columns.empty() ? a.column[k]
+                                                  : new_columns[a.column[k]]);
+      append(a.entries, k, result.entries);
+      if (!a.rest.empty()) {
+        append(a.rest, k, result.rest);
+      }
+    }
+    result.start.push_back(Eigen::Index(result.column.size()));
+  }
+  return result;
 }
 
 BlockMatrix Transposed(const BlockMatrix& a) {

@@ -8,7 +8,8 @@ namespace elastimate {
 
 /// A sparse matrix of dense blocks, compressed by rows of blocks.  Its entries
 /// have single precision, which is enough for a preconditioner: products with
-/// it take as long as its entries take to read.
+/// it take as long as its entries take to read.  With `rest` the entries have
+/// 48 bits, nearly those of double precision.
 struct BlockMatrix {
   int block_rows = 1;  ///< Rows of each block: 1, 2, 3 or 6.
   int block_columns = 1;
@@ -17,6 +18,8 @@ struct BlockMatrix {
   std::vector<int> column;          ///< The column of blocks of each block.
   /// The entries of each block by columns, block after block.
   std::vector<float> entries;
+  /// What rounding has taken from each entry; or empty.
+  std::vector<float> rest;
 
   Eigen::Index NumBlockRows() const { return Eigen::Index(start.size()) - 1; }
   Eigen::Index NumRows() const { return block_rows * NumBlockRows(); }
@@ -29,6 +32,18 @@ struct BlockMatrix {
 [[nodiscard]] Eigen::MatrixXd Multiply(const BlockMatrix& a,
                                        const Eigen::MatrixXd& x);
 
+/// Returns (A + rest) X likewise.  Precondition: `rest` is not empty.
+[[nodiscard]] Eigen::MatrixXd MultiplyAccurately(const BlockMatrix& a,
+                                                 const Eigen::MatrixXd& x);
+
+/// Returns the matrix whose i-th row of blocks is row rows[i] of A, with the
+/// column j of blocks of A as its column new_columns[j], or all columns where
+/// they are where new_columns is empty.  Blocks keep their order within a row.
+[[nodiscard]] BlockMatrix Ordered(const BlockMatrix& a,
+                                  const std::vector<int>& rows,
+                                  const std::vector<int>& new_columns);
+
+/// Returns the transpose of A, without `rest`.
 [[nodiscard]] BlockMatrix Transposed(const BlockMatrix& a);
 
 /// Returns the blocks on the diagonal of a matrix of square blocks, side by

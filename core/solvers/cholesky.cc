@@ -5,18 +5,15 @@
 #include <Eigen/SparseCore>
 #include <cassert>
 #include <cmath>
-#include <mutex>
-#include <new>
 #include <random>
-#include <type_traits>
 #include <vector>
 
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/solvers/cholmod_view.h"
+#include "elastimate/core/solvers/nested_dissection.h"
 
 namespace elastimate {
 namespace {
-
-static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 
 // Ratios of pivots (a cheap condition estimate): below the first a solution has
 // no correct digit, below the second rounding may have made the smallest pivot,
@@ -24,59 +21,14 @@ static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 constexpr double kSmallestPivotRatio = 1e-15;
 constexpr double kSuspiciousPivotRatio = 1e-9;
 
-// A view of our arrays as a symmetric matrix of which the lower triangle is
-// stored; CHOLMOD does not write to it.
-cholmod_sparse SymmetricView(const std::int64_t* column_start,
-                             const std::int64_t* row, const double* values,
-                             std::size_t size, std::size_t num_values) {
-  cholmod_sparse view{};
-  view.nrow = size;
-  view.ncol = size;
-  view.nzmax = num_values;
-  view.p = const_cast<std::int64_t*>(column_start);
-  view.i = const_cast<std::int64_t*>(row);
-  view.x = const_cast<double*>(values);
-  view.stype = -1;
-  view.itype = CHOLMOD_LONG;
-  view.xtype = values == nullptr ? CHOLMOD_PATTERN : CHOLMOD_REAL;
-  view.dtype = CHOLMOD_DOUBLE;
-  view.sorted = 1;
-  view.packed = 1;
-  return view;
-}
-
-void ThrowIfOutOfMemory(const cholmod_common& common) {
-  if (common.status == CHOLMOD_OUT_OF_MEMORY ||
-      common.status == CHOLMOD_TOO_LARGE) {
-    throw std::bad_alloc();
-  }
-}
-
-// Nested dissection of the graph of the nodes, as an ordering of the free
-// degrees of freedom.
-std::vector<std::int64_t> NestedDissection(
-    const NodeGraph& graph, const DegreesOfFreedom& degrees_of_freedom,
-    cholmod_common* common) {
-  const std::size_t num_nodes = graph.start.size() - 1;
-  const std::vector<std::int64_t> start(graph.start.begin(), graph.start.end());
-  const std::vector<std::int64_t> row(graph.row.begin(), graph.row.end());
-  cholmod_sparse pattern =
-      SymmetricView(start.data(), row.data(), nullptr, num_nodes, row.size());
-  std::vector<SuiteSparse_long> node_order(num_nodes);
-  {
-    // METIS seeds and draws from rand(), whose state threads share: at once,
-    // two would have other orders, and results that differ by rounding.
-    static std::mutex one_at_a_time;
-    const std::lock_guard<std::mutex> lock(one_at_a_time);
-    if (cholmod_l_metis(&pattern, nullptr, 0, 1, node_order.data(), common) ==
-        0) {
-      ThrowIfOutOfMemory(*common);
-      assert(false && "cholmod_l_metis refused the graph");
-    }
-  }
+// Orders the free degrees of freedom by nodes.
+std::vector<std::int64_t> OrderOfDofs(
+    const NodeGraph& graph, const DegreesOfFreedom& degrees_of_freedom) {
   std::vector<std::int64_t> order;
   order.reserve(degrees_of_freedom.NumFree());
-  for (const SuiteSparse_long node : node_order) {
+  for (const std::int64_t node :
+       NestedDissection({graph.start.begin(), graph.start.end()},
+                        {graph.row.begin(), graph.row.end()})) {
     for (int i = 0; i < degrees_of_freedom.dimension; ++i) {
       const Eigen::Index place =
           degrees_of_freedom.place[degrees_of_freedom.dimension * node + i];
@@ -127,7 +79,7 @@ Cholesky::Cholesky(const StiffnessAssembly& assembly,
     : workspace_(std::make_unique<Workspace>(assembly.Pattern())) {
   cholmod_common* common = &workspace_->common;
   std::vector<std::int64_t> order =
-      NestedDissection(assembly.Graph(), degrees_of_freedom, common);
+      OrderOfDofs(assembly.Graph(), degrees_of_freedom);
   common->nmethods = 1;
   common->method[0].ordering = CHOLMOD_GIVEN;
   common->postorder = 1;

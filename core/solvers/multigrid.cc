@@ -60,9 +60,13 @@ std::unique_ptr<LinearSolver> MakeMultigrid(
     start();
   }
   return std::make_unique<AlgebraicMultigrid>(
-      assembly, [&](const Eigen::VectorXd& values, MultigridSpaces& spaces) {
-        return TheModule().find_spaces(mesh, assembly, degrees_of_freedom,
-                                       values, spaces);
+      [&](const Eigen::VectorXd& values, MultigridSpaces& spaces) {
+        if (!TheModule().find_spaces(mesh, assembly, degrees_of_freedom, values,
+                                     spaces)) {
+          return false;
+        }
+        OrderFinest(mesh, degrees_of_freedom, spaces);
+        return true;
       });
 }
 

@@ -295,8 +295,9 @@ PCType PetscMatrix::Preconditioner(const Mesh& mesh) const {
 }
 
 // Returns a matrix in blocks of this size, of which those without an entry are
-// left out.
-BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
+// left out, with or without the rest of single precision.
+BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns,
+                     bool with_rest = false) {
   PetscInt num_rows = 0;
   PetscInt num_columns = 0;
   Check(MatGetSize(matrix, &num_rows, &num_columns));
@@ -311,6 +312,7 @@ BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
   const auto num_entries = static_cast<std::size_t>(info.nz_used);
   result.column.reserve(num_entries / size);
   result.entries.reserve(num_entries);
+  result.rest.reserve(with_rest ? num_entries : 0);
   std::vector<Eigen::Index> place(num_columns / block_columns, -1);
   for (PetscInt first = 0; first < num_rows; first += block_rows) {
     for (int r = 0; r < block_rows; ++r) {
@@ -324,10 +326,15 @@ BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
           block = Eigen::Index(result.column.size());
           result.column.push_back(columns[k] / block_columns);
           result.entries.resize(result.entries.size() + size, 0);
+          result.rest.resize(with_rest ? result.entries.size() : 0, 0);
         }
-        result.entries[block * size +
-                       (columns[k] % block_columns) * block_rows + r] =
-            static_cast<float>(values[k]);
+        const Eigen::Index at =
+            block * size + (columns[k] % block_columns) * block_rows + r;
+        result.entries[at] = static_cast<float>(values[k]);
+        if (with_rest) {
+          result.rest[at] =
+              static_cast<float>(values[k] - double{result.entries[at]});
+        }
       }
       Check(MatRestoreRow(matrix, first + r, &length, &columns, &values));
     }
@@ -335,6 +342,7 @@ BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
   }
   result.column.shrink_to_fit();
   result.entries.shrink_to_fit();
+  result.rest.shrink_to_fit();
   return result;
 }
 
@@ -370,8 +378,9 @@ MultigridSpaces PetscMatrix::FindSpaces(const Mesh& mesh) {
     Mat matrix = nullptr;
     Check(PCMGGetSmoother(preconditioner_, space, &smoother));
     Check(KSPGetOperators(smoother, nullptr, &matrix));
-    const int block = space + 1 == num_spaces ? dimension_ : 3 * dimension_ - 3;
-    spaces.matrices.push_back(InBlocks(matrix, block, block));
+    const bool is_finest = space + 1 == num_spaces;
+    const int block = is_finest ? dimension_ : 3 * dimension_ - 3;
+    spaces.matrices.push_back(InBlocks(matrix, block, block, is_finest));
     if (space > 0) {
       Mat interpolation = nullptr;
       Check(PCMGGetInterpolation(preconditioner_, space, &interpolation));

@@ -34,8 +34,12 @@ void InvertFree(const Eigen::MatrixXd& blocks, const Eigen::VectorXd& is_free,
 template <int kDimension, class Columns>
 void AddEach(const Eigen::MatrixXd& blocks, const Columns& v, double keep,
              Eigen::MatrixXd& x) {
+  // A thread takes about as long to start as so many rows.
+  constexpr Eigen::Index kFewRows = 20000;
+  const Eigen::Index num_rows = x.rows();
   for (Eigen::Index k = 0; k < x.cols(); ++k) {
-    for (Eigen::Index i = 0; i < x.rows(); i += kDimension) {
+#pragma omp parallel for schedule(static) if (num_rows > kFewRows)
+    for (Eigen::Index i = 0; i < num_rows; i += kDimension) {
       const Eigen::Matrix<double, kDimension, 1> of_node =
           v.col(k).template segment<kDimension>(i);
       auto sum = x.col(k).segment<kDimension>(i);

@@ -3,7 +3,10 @@
 #include <Eigen/CholmodSupport>
 #include <Eigen/SparseCore>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "elastimate/core/solvers/nested_dissection.h"
 
 namespace elastimate {
 namespace {
@@ -21,28 +24,45 @@ double MaternVariance(double kappa, int dimension) {
 
 }  // namespace
 
-struct FieldPrior::Factor {
-  Eigen::SparseMatrix<double> matrix;
-  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> inverse;
-
-  // AMD orders alike in every thread, which METIS does not.
-  Factor() {
-    inverse.cholmod().nmethods = 1;
-    inverse.cholmod().method[0].ordering = CHOLMOD_AMD;
-    inverse.cholmod().postorder = 1;
+class FieldPrior::Factor {
+ public:
+  explicit Factor(Eigen::SparseMatrix<double> m) : matrix_(std::move(m)) {
+    const Eigen::SparseMatrix<double> lower =
+        matrix_.triangularView<Eigen::Lower>();
+    const std::vector<std::int64_t> order = NestedDissection(
+        {lower.outerIndexPtr(), lower.outerIndexPtr() + lower.cols() + 1},
+        {lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros()});
+    order_.resize(matrix_.rows());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      order_.indices()(order[i]) = static_cast<int>(i);
+    }
+    inverse_.cholmod().nmethods = 1;
+    inverse_.cholmod().method[0].ordering = CHOLMOD_NATURAL;
+    inverse_.cholmod().postorder = 1;
+    Eigen::SparseMatrix<double> permuted;
+    permuted = matrix_.twistedBy(order_);
+    inverse_.compute(permuted);
   }
+
+  const Eigen::SparseMatrix<double>& Matrix() const { return matrix_; }
 
   // CHOLMOD prints an error where there are no columns.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& b) const {
-    return b.cols() == 0 ? b : Eigen::MatrixXd(inverse.solve(b));
+    return b.cols() == 0 ? b
+                         : order_.transpose() *
+                               Eigen::MatrixXd(inverse_.solve(order_ * b));
   }
+
+ private:
+  Eigen::SparseMatrix<double> matrix_;
+  Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< From rows to places.
+  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> inverse_;
 };
 
 FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
     : dimension_(mesh.Dimension()),
       volumes_(ElementVolumes(mesh) / mesh.section.thickness),
-      facets_(FacetsOfElements(mesh)),
-      factor_(std::make_unique<Factor>()) {
+      facets_(FacetsOfElements(mesh)) {
   const Eigen::Index n = mesh.NumElements();
   size_ = std::pow(volumes_.sum(), 1.0 / dimension_);
   const double kappa =
@@ -67,9 +87,9 @@ FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
     entries.emplace_back(a, b, -coefficient);
     entries.emplace_back(b, a, -coefficient);
   }
-  factor_->matrix.resize(n, n);
-  factor_->matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_->inverse.compute(factor_->matrix);
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  factor_ = std::make_unique<Factor>(std::move(matrix));
 }
 
 FieldPrior::~FieldPrior() = default;
@@ -84,12 +104,12 @@ Eigen::MatrixXd FieldPrior::ApplyTransposed(const Eigen::MatrixXd& x) const {
 
 Eigen::MatrixXd FieldPrior::ApplyInverse(const Eigen::MatrixXd& x) const {
   return scale_.cwiseInverse().asDiagonal() *
-         Eigen::MatrixXd(factor_->matrix * x);
+         Eigen::MatrixXd(factor_->Matrix() * x);
 }
 
 Eigen::MatrixXd FieldPrior::ApplyInverseTransposed(
     const Eigen::MatrixXd& y) const {
-  return factor_->matrix * (scale_.cwiseInverse().asDiagonal() * y);
+  return factor_->Matrix() * (scale_.cwiseInverse().asDiagonal() * y);
 }
 
 }  // namespace elastimate

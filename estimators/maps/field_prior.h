@@ -59,7 +59,7 @@ class FieldPrior {
   Eigen::MatrixXd ApplyInverseTransposed(const Eigen::MatrixXd& y) const;
 
  private:
-  struct Factor;
+  class Factor;
 
   int dimension_;
   double size_;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <random>
 #include <tuple>
 
@@ -71,6 +74,42 @@ TEST_P(BlocksOfSize, AreMultipliedAsADenseMatrix) {
     const Eigen::MatrixXd expected = Dense(a_) * x;
     EXPECT_LE((Multiply(a_, x) - expected).norm(), 1e-13 * expected.norm());
   }
+}
+
+TEST_P(BlocksOfSize, AreMultipliedWithTheirRest) {
+  // Entries of 24 bits below those of a.
+  a_.rest.resize(a_.entries.size());
+  std::transform(a_.entries.rbegin(), a_.entries.rend(), a_.rest.begin(),
+                 [](float entry) { return std::ldexp(entry, -25); });
+  BlockMatrix rest = a_;
+  rest.entries = a_.rest;
+  for (const int num_columns : {0, 1, 4, 7}) {
+    const Eigen::MatrixXd x = RandomMatrix(a_.num_columns, num_columns, 2);
+    const Eigen::MatrixXd expected = (Dense(a_) + Dense(rest)) * x;
+    EXPECT_LE((MultiplyAccurately(a_, x) - expected).norm(),
+              1e-13 * expected.norm());
+  }
+}
+
+TEST_P(BlocksOfSize, AreOrdered) {
+  a_.rest = a_.entries;
+  std::vector<int> rows(kBlockRows);
+  std::vector<int> new_columns(kBlockColumns);
+  std::iota(rows.rbegin(), rows.rend(), 0);
+  std::iota(new_columns.rbegin(), new_columns.rend(), 0);
+  const BlockMatrix ordered = Ordered(a_, rows, new_columns);
+  const Eigen::MatrixXd dense = Dense(a_);
+  const Eigen::MatrixXd result = Dense(ordered);
+  for (int i = 0; i < kBlockRows; ++i) {
+    for (int j = 0; j < kBlockColumns; ++j) {
+      ASSERT_EQ(result.block(i * a_.block_rows, j * a_.block_columns,
+                             a_.block_rows, a_.block_columns),
+                dense.block((kBlockRows - 1 - i) * a_.block_rows,
+                            (kBlockColumns - 1 - j) * a_.block_columns,
+                            a_.block_rows, a_.block_columns));
+    }
+  }
+  EXPECT_EQ(ordered.rest, ordered.entries);
 }
 
 TEST_P(BlocksOfSize, AreTransposed) {
