@@ -289,9 +289,9 @@ LargeStrainState LargeStrainEquilibrium::SolveFrom(
   return state;
 }
 
-LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
-                                               Eigen::Index k,
-                                               int most_tangents) {
+LargeStrainState LargeStrainEquilibrium::Solve(
+    const Eigen::VectorXd& moduli, Eigen::Index k, int most_tangents,
+    const std::function<void(double)>& progress) {
   LargeStrainState state;
   state.displacement = Eigen::VectorXd::Zero(load_.rows());
   double step = 1;
@@ -299,6 +299,9 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
     const double t = std::min(1.0, state.load_share + step);
     Eigen::VectorXd u = state.displacement;
     const int tangents_before = state.num_tangents;
+    if (progress && state.num_steps > 0) {
+      progress(state.load_share);
+    }
     ++state.num_steps;
     state.status = Newton(moduli, k, t, state, u);
     if (state.status == EquilibriumStatus::kDone) {
@@ -328,10 +331,17 @@ LargeStrainSolution SolveLoadCases(
   solution.imbalance.resize(model.Load().rows(), num_cases);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     const std::string load_case = "load case " + std::to_string(k + 1);
+    const auto show_step = [&](double load_share) {
+      if (progress) {
+        progress(load_case + ", " + Percent(load_share) +
+                 " of the load reached");
+      }
+    };
     if (progress) {
       progress(load_case);
     }
-    const LargeStrainState state = model.Solve(moduli, k);
+    const LargeStrainState state =
+        model.Solve(moduli, k, std::numeric_limits<int>::max(), show_step);
     if (state.status != EquilibriumStatus::kDone) {
       solution.why_not = load_case + ": " + WhyNotInEquilibrium(state);
       return solution;

@@ -116,9 +116,11 @@ class LargeStrainEquilibrium {
 
   /// Finds the equilibrium in load case `k`.  About five tangents for each step
   /// of the load.  After a step that failed, the search goes on only if it has
-  /// taken at most `most_tangents` until then.
+  /// taken at most `most_tangents` until then.  Each further step begins with
+  /// `progress` of the share of the load that was reached; it may be empty.
   LargeStrainState Solve(const Eigen::VectorXd& moduli, Eigen::Index k,
-                         int most_tangents = std::numeric_limits<int>::max());
+                         int most_tangents = std::numeric_limits<int>::max(),
+                         const std::function<void(double)>& progress = {});
 
   /// Finds the equilibrium in load case `k` near `start` (num_dofs), such as
   /// that of moduli that are nearly the same.  Newton's method begins there at
@@ -192,7 +194,8 @@ struct LargeStrainSolution {
 };
 
 /// Finds the equilibrium of one load case after the other.  `progress` is
-/// called with "load case 2" before each search; it may be empty.
+/// called with "load case 2" before each search, and with "load case 2, 30 % of
+/// the load reached" before each further step of it; it may be empty.
 [[nodiscard]] LargeStrainSolution SolveLoadCases(
     const Eigen::VectorXd& moduli, LargeStrainEquilibrium& model,
     const std::function<void(const std::string&)>& progress = {});

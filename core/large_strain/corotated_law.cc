@@ -74,11 +74,17 @@ void SetCorotatedStresses(const PointMatrices& gradients, int count,
 template <class Places>
 HWY_INLINE void SetTangentsOfRotation(double mu, double lambda,
                                       const PointMatrices& gradients, int count,
-                                      PointTangents& tangents) {
+                                      PointTangents& tangents,
+                                      PointMatrices* stresses) {
   for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
     const Polar polar = PolarOf(LoadMatrix(gradients, p));
     const Matrix3& r = polar.rotation;
     const Number stretch = Trace(polar.v);
+    if (stresses != nullptr) {
+      Matrix3 stress = Number(2 * mu) * Product(r, polar.v);
+      AddScaled(Number(lambda) * stretch, r, stress);
+      StoreMatrix(stress, p, *stresses);
+    }
     Matrix3 k = Number(-1) * polar.v;
     AddToDiagonal(Number(2) + stretch, k);
     const Matrix3 cofactors = Cofactors(k);
@@ -110,13 +116,13 @@ HWY_INLINE void SetTangentsOfRotation(double mu, double lambda,
 void SetCorotatedTangents(double mu, double lambda,
                           const PointMatrices& gradients,
                           GradientEntries entries, int count,
-                          PointTangents& tangents) {
+                          PointTangents& tangents, PointMatrices* stresses) {
   if (entries == GradientEntries::kOfPlane) {
-    SetTangentsOfRotation<PlacesOfPlane>(mu, lambda, gradients, count,
-                                         tangents);
+    SetTangentsOfRotation<PlacesOfPlane>(mu, lambda, gradients, count, tangents,
+                                         stresses);
   } else {
-    SetTangentsOfRotation<PlacesOfSolid>(mu, lambda, gradients, count,
-                                         tangents);
+    SetTangentsOfRotation<PlacesOfSolid>(mu, lambda, gradients, count, tangents,
+                                         stresses);
   }
 }
 
@@ -156,9 +162,10 @@ void CorotatedLaw::StressesAtPoints(const PointMatrices& gradients,
 void CorotatedLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
                                     const PointMatrices& gradients,
                                     GradientEntries entries, int count,
-                                    PointTangents& tangents) const {
+                                    PointTangents& tangents,
+                                    PointMatrices* stresses) const {
   HWY_DYNAMIC_DISPATCH(SetCorotatedTangents)
-  (moduli(0), moduli(1), gradients, entries, count, tangents);
+  (moduli(0), moduli(1), gradients, entries, count, tangents, stresses);
 }
 
 }  // namespace elastimate

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace elastimate {
 namespace {
@@ -42,25 +41,20 @@ void SetCrossGradients(const LargeStrainLaw& law, const Eigen::VectorXd& moduli,
   for (int p = 0; p < count; ++p) {
     cross[p] = FirstGuess(gradients, p, ratio);
   }
-  std::vector<PointMatrices> columns(law.NumModuli());
+  PointMatrices stresses;
   PointTangents tangents;
+  const double* const stress = stresses.row[kCross];
+  const double* const slope = tangents.row[TangentRow(kCross, kCross)];
   for (int step = 0; step < kMostSteps; ++step) {
-    law.StressesAtPoints(gradients, GradientEntries::kOfPlane, count,
-                         columns.data());
     law.TangentsAtPoints(moduli, gradients, GradientEntries::kOfPlane, count,
-                         tangents);
+                         tangents, &stresses);
     bool is_found = true;
     for (int p = 0; p < count; ++p) {
-      double stress = 0;
-      for (int k = 0; k < law.NumModuli(); ++k) {
-        stress += moduli(k) * columns[k].row[kCross][p];
-      }
-      const double slope = tangents.row[TangentRow(kCross, kCross)][p];
       // Where the slope is negative, the step goes the way of the stress.  The
       // stretch becomes half or twice of what it is at most.
       const double stretch = 1 + cross[p];
       const double change =
-          std::clamp(-stress / std::abs(slope), -stretch / 2, stretch);
+          std::clamp(-stress[p] / std::abs(slope[p]), -stretch / 2, stretch);
       cross[p] += change;
       is_found = is_found && std::abs(change) <= kTolerance * stretch;
     }
@@ -69,14 +63,9 @@ void SetCrossGradients(const LargeStrainLaw& law, const Eigen::VectorXd& moduli,
     }
   }
   for (int p = 0; p < count; ++p) {
-    double stress = 0;
-    for (int k = 0; k < law.NumModuli(); ++k) {
-      stress += moduli(k) * columns[k].row[kCross][p];
-    }
     // Rounding may be all that is left.
     constexpr double kRounding = 1e-9;
-    const double slope = tangents.row[TangentRow(kCross, kCross)][p];
-    if (!(std::abs(stress) <= kRounding * std::abs(slope))) {
+    if (!(std::abs(stress[p]) <= kRounding * std::abs(slope[p]))) {
       cross[p] = std::numeric_limits<double>::quiet_NaN();
     }
   }

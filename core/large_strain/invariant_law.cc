@@ -258,7 +258,8 @@ void InvariantLaw::StressesAtPoints(const PointMatrices& gradients,
 void InvariantLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
                                     const PointMatrices& gradients,
                                     GradientEntries entries, int count,
-                                    PointTangents& tangents) const {
+                                    PointTangents& tangents,
+                                    PointMatrices* stresses) const {
   const std::vector<PointDerivatives> of_moduli =
       DerivativesOf(*this, gradients, count);
   // W = sum_k theta_k W_k; its derivatives are sums as well.
@@ -275,6 +276,10 @@ void InvariantLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
       Eigen::Map<const Eigen::ArrayXd>(sum.w22, count).any();
   HWY_DYNAMIC_DISPATCH(SetTangents)
   (gradients, entries, count, sum, has_second, tangents);
+  if (stresses != nullptr) {
+    HWY_DYNAMIC_DISPATCH(SetStresses)
+    (gradients, entries, count, &sum, 1, stresses);
+  }
 }
 
 }  // namespace elastimate

@@ -61,7 +61,8 @@ class InvariantLaw : public LargeStrainLaw {
                         int count, PointMatrices* columns) const override;
   void TangentsAtPoints(const Eigen::VectorXd& moduli,
                         const PointMatrices& gradients, GradientEntries entries,
-                        int count, PointTangents& tangents) const override;
+                        int count, PointTangents& tangents,
+                        PointMatrices* stresses) const override;
 };
 
 }  // namespace elastimate

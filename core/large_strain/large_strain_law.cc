@@ -43,7 +43,7 @@ Eigen::MatrixXd LargeStrainLaw::Tangent(const Eigen::VectorXd& moduli,
                                         SectionModel /*model*/) const {
   PointTangents tangents;
   TangentsAtPoints(moduli, AtOnePoint(gradient), GradientEntries::kAll, 1,
-                   tangents);
+                   tangents, nullptr);
   Eigen::MatrixXd tangent(9, 9);
   for (int a = 0; a < 9; ++a) {
     for (int b = 0; b < 9; ++b) {

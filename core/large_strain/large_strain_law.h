@@ -70,11 +70,12 @@ class LargeStrainLaw : public Law {
                                 GradientEntries entries, int count,
                                 PointMatrices* columns) const = 0;
   /// Sets `tangents` to dP / dH for these moduli at these points, with such
-  /// entries.
+  /// entries, and `stresses`, unless it is null, to P = sum_k theta_k P_k.
   virtual void TangentsAtPoints(const Eigen::VectorXd& moduli,
                                 const PointMatrices& gradients,
                                 GradientEntries entries, int count,
-                                PointTangents& tangents) const = 0;
+                                PointTangents& tangents,
+                                PointMatrices* stresses) const = 0;
 };
 
 /// Returns (mu, lambda) of the small strains that a law of large strains has at

@@ -62,15 +62,23 @@ void GreenStrainLaw::StressesAtPoints(const PointMatrices& gradients,
 void GreenStrainLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
                                       const PointMatrices& gradients,
                                       GradientEntries /*entries*/, int count,
-                                      PointTangents& tangents) const {
+                                      PointTangents& tangents,
+                                      PointMatrices* stresses) const {
   Matrix9 stiffness = Matrix9::Zero();
   for (int k = 0; k < NumModuli(); ++k) {
     stiffness += moduli(k) * stiffnesses_[k];
   }
   // dP = dH S + F C : (F^T dH), where C takes the symmetric part of F^T dH.
   for (int p = 0; p < count; ++p) {
-    Eigen::Matrix3d f = GradientAt(gradients, p);
+    Eigen::Matrix3d f = GradientAt(gradients, p);  // H, until I is added.
     const Vector9 s = stiffness * StrainOf(f).reshaped();
+    if (stresses != nullptr) {
+      const Eigen::Map<const Eigen::Matrix3d> second(s.data());
+      const Eigen::Matrix3d stress = second + f * second;
+      for (int i = 0; i < 9; ++i) {
+        stresses->row[i][p] = stress(i);
+      }
+    }
     f.diagonal().array() += 1;
     for (Eigen::Index i = 0; i < 3; ++i) {
       for (Eigen::Index j = 0; j <= i; ++j) {

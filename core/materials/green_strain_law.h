@@ -60,7 +60,8 @@ class GreenStrainLaw : public LargeStrainLaw {
                         int count, PointMatrices* columns) const override;
   void TangentsAtPoints(const Eigen::VectorXd& moduli,
                         const PointMatrices& gradients, GradientEntries entries,
-                        int count, PointTangents& tangents) const override;
+                        int count, PointTangents& tangents,
+                        PointMatrices* stresses) const override;
 
  private:
   using Matrix9 = Eigen::Matrix<double, 9, 9>;

@@ -133,7 +133,7 @@ class ElementBatch {
       return columns;
     }
     PointTangents tangents;
-    SetTangents(tangents);
+    SetTangents(tangents, nullptr);
     const double* const cross_slope =
         tangents.row[TangentRow(kCrossEntry, kCrossEntry)];
     for (PointMatrices& stress : columns) {
@@ -147,9 +147,9 @@ class ElementBatch {
     }
     return columns;
   }
-  void SetTangents(PointTangents& tangents) const {
+  void SetTangents(PointTangents& tangents, PointMatrices* stresses) const {
     pass_.law.TangentsAtPoints(pass_.moduli, gradients_, kEntries, NumPoints(),
-                               tangents);
+                               tangents, stresses);
   }
 
   int PlaceOf(std::size_t element, int i) const {
@@ -320,7 +320,7 @@ void AddTet4Blocks(const MaterialPass& pass,
       pass, displacement,
       [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
         pass.law.TangentsAtPoints(pass.moduli, gradients, GradientEntries::kAll,
-                                  count, tangents);
+                                  count, tangents, nullptr);
         points.AddBlocks(tangents, graph, blocks);
       });
 }
@@ -336,7 +336,7 @@ void AddTet4Products(const MaterialPass& pass,
       pass, displacement,
       [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
         pass.law.TangentsAtPoints(pass.moduli, gradients, GradientEntries::kAll,
-                                  count, tangents);
+                                  count, tangents, nullptr);
         for (Eigen::Index column = 0; column < directions.cols(); ++column) {
           points.SetGradients(directions.col(column).data(), change);
           stresses = {};
@@ -455,32 +455,6 @@ void AddDilatation(const ElementBatch<kKind>& batch, std::size_t e,
   }
 }
 
-// Sets the curvature of elements that smooth their dilatation, for the tangents
-// of their law.
-template <ElementKind kKind>
-void SetCurvature(const ElementBatch<kKind>& batch,
-                  const Eigen::VectorXd& moduli, const PointTangents& tangents,
-                  MeanDilatation::Curvature& curvature) {
-  const std::vector<PointMatrices> columns = batch.Stresses();
-  PointMatrices stresses = {};
-  const auto add = [&](int entry) {
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      for (int p = 0; p < PointMatrices::kPoints; ++p) {
-        stresses.row[entry][p] +=
-            moduli(Eigen::Index(k)) * columns[k].row[entry][p];
-      }
-    }
-  };
-  if constexpr (kDimensionOf<kKind> == 2) {
-    std::for_each(kPlacesOfPlane.begin(), kPlacesOfPlane.end(), add);
-  } else {
-    for (int entry = 0; entry < 9; ++entry) {
-      add(entry);
-    }
-  }
-  batch.Mean().SetCurvature(stresses, tangents, curvature);
-}
-
 // Rotates the lower triangle of an element stiffness from the frame of the
 // material to the axes of the mesh.
 template <ElementKind kKind, class Frame>
@@ -501,11 +475,12 @@ template <ElementKind kKind, class Visitor>
 void VisitTangents(const MaterialPass& pass,
                    const Eigen::VectorXd& displacement, const Visitor& visit) {
   PointTangents tangents;
+  PointMatrices stresses = {};
   MeanDilatation::Curvature curvature;
   VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
-    batch.SetTangents(tangents);
+    batch.SetTangents(tangents, TakesMean<kKind>(pass) ? &stresses : nullptr);
     if (TakesMean<kKind>(pass)) {
-      SetCurvature<kKind>(batch, pass.moduli, tangents, curvature);
+      batch.Mean().SetCurvature(stresses, tangents, curvature);
     }
     const PointTangents& of_points =
         TakesMean<kKind>(pass) ? curvature.local : tangents;

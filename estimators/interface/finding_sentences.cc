@@ -665,7 +665,9 @@ Finding LargeDeformation(const DeformationSize& size,
             "the displacements make strains of " + StrainText(size.strain) +
                 ", so they are probably in another unit of length than the "
                 "coordinates, or are positions after the load",
-            "give displacements in the unit of the coordinates"};
+            "give displacements in the unit of the coordinates; if the "
+            "specimen was stretched so far, name its law, such as "
+            "--material=neo_hookean"};
   }
   const std::string text =
       DeformationText(size) +

@@ -201,7 +201,7 @@ TEST_F(DocumentationLong, HasTheOutputOfLargeDeformations) {
             testing::ReadText(Source("examples/bent_arm/scene.json")));
   EXPECT_EQ(ExpectOutputs({"docs/large_deformations.md",
                            "examples/cook_membrane/README.md"}),
-            3U);
+            2U);
 }
 
 TEST_F(DocumentationLong, HasTheDataOfLargeDeformations) {

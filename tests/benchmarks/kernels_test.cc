@@ -51,7 +51,7 @@ TEST_F(Kernels, QuickRunTimesEachKernelAtEachSize) {
     EXPECT_GT(row.Number("ratio_of_forces [1]"), 0);
     EXPECT_GT(row.Number("ratio_of_tangents [1]"), 0);
   }
-  EXPECT_EQ(kinds.size(), 6U);
+  EXPECT_EQ(kinds.size(), 9U);
   const auto metadata =
       nlohmann::json::parse(testing::ReadText(folder_ / "kernels.json"));
   EXPECT_TRUE(metadata.contains("commit"));

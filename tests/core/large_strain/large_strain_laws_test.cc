@@ -299,10 +299,11 @@ TEST_P(LargeStrainLaws, GiveTheSameAtManyPointsAsAtOne) {
   }
   std::vector<PointMatrices> columns(law_.NumModuli());
   PointTangents tangents;
+  PointMatrices sum;
   law_.StressesAtPoints(gradients, GradientEntries::kAll, kCount,
                         columns.data());
   law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kAll, kCount,
-                        tangents);
+                        tangents, &sum);
   for (int p = 0; p < kCount; ++p) {
     const Eigen::Matrix3d h = LargeGradient(p);
     const Eigen::MatrixXd stresses = law_.Stresses(h, kAnySection);
@@ -311,6 +312,7 @@ TEST_P(LargeStrainLaws, GiveTheSameAtManyPointsAsAtOne) {
       for (int k = 0; k < law_.NumModuli(); ++k) {
         EXPECT_NEAR(columns[k].row[i][p], stresses(i, k), 1e-12);
       }
+      EXPECT_NEAR(sum.row[i][p], stresses.row(i).dot(Moduli()), 1e-11);
       EXPECT_NEAR(tangents.row[TangentRow(i, 2)][p], tangent(2, i), 1e-11);
     }
   }
@@ -333,12 +335,15 @@ TEST_P(LargeStrainLaws, HaveInThePlaneWhatTheSolidHas) {
                         stresses_of_solid.data());
   PointTangents of_plane;
   PointTangents of_solid;
+  PointMatrices sum_of_plane;
+  PointMatrices sum_of_solid;
   law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kOfPlane, kCount,
-                        of_plane);
+                        of_plane, &sum_of_plane);
   law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kAll, kCount,
-                        of_solid);
+                        of_solid, &sum_of_solid);
   for (const int a : kPlacesOfPlane) {
     for (int p = 0; p < kCount; ++p) {
+      EXPECT_NEAR(sum_of_plane.row[a][p], sum_of_solid.row[a][p], 1e-11);
       for (int k = 0; k < law_.NumModuli(); ++k) {
         EXPECT_NEAR(stresses_of_plane[k].row[a][p],
                     stresses_of_solid[k].row[a][p], 1e-12);
@@ -380,7 +385,8 @@ class NotObjective : public OwnModuliLaw<LargeStrainLaw> {
   void TangentsAtPoints(const Eigen::VectorXd& moduli,
                         const PointMatrices& /*gradients*/,
                         GradientEntries /*entries*/, int /*count*/,
-                        PointTangents& tangents) const override {
+                        PointTangents& tangents,
+                        PointMatrices* /*stresses*/) const override {
     tangents = {};
     for (int i = 0; i < 9; ++i) {
       tangents.row[TangentRow(i, i)][0] = moduli(0);
