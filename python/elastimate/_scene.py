@@ -5,24 +5,25 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, Mapping, Sequence, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._cells import cells_of, connectivity_of
 from ._core import Material, Parameter
 from ._estimate import Estimate, find_parameter
-from ._foreign_mesh import is_mesh, is_planar, one_kind, take_mesh
 
 Floats = NDArray[np.float64]
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, eq=False)
 class Box:
     """A part of space, bounds included: the corners have d coordinates [length].
 
-    As a support it holds ``components`` (d flags; all by default) of its nodes at a
+    As a support it holds ``components`` (d flags, or "xz"; all by default) of its nodes at a
     ``displacement`` [length], zero by default.  The displacement "measured" is for a support that
     moved by amounts that the measurement at its nodes tells, and "rigid" for one that moved as a
     rigid body, such as a grip.
@@ -30,7 +31,7 @@ class Box:
 
     lower: ArrayLike
     upper: ArrayLike
-    components: Sequence[bool] | None = None
+    components: Sequence[bool] | str | None = None
     displacement: ArrayLike | str | None = None
 
 
@@ -120,7 +121,7 @@ class Scene:
     nodes       positions, shape (n, d) with d = 3, or 2 for a planar specimen [length]; or a mesh of
                 meshio or pyvista, and then no cells
     cells       node numbers from zero, shape (m, nodes of an element), in the order of VTK; or a
-                dict of one such array by its kind
+                dict of such arrays by their kinds
     supports    which nodes are held: node numbers, flags of shape (n,) or (n, d), a Box, or a
                 list of boxes.  None for a specimen that nothing holds
     forces, loads, displacements, points, noise_sd, resultants
@@ -128,14 +129,17 @@ class Scene:
     cases       a list of LoadCase
     support_displacements
                 at which nodes are held, shape (n, d) [length]; zero where it is None
-    kind        of the elements, such as "tet4"; needed for "curved_tet10" and "curved_tri6" only
+    kind        of the elements, such as "tet4", where the number of nodes does not tell it
     section     "plane_stress" (the default of a planar specimen) or "plane_strain"
     thickness   of a planar specimen [length]
-    regions     a region id for each element, shape (m,)
+    regions     a region id for each cell, shape (m,)
     materials   a list of Material; None for one isotropic one
     origin      "computed" where these very elements computed the displacements, else "measured"
     rigid_motion_free
                 whether displacements contain an unknown rigid motion
+
+    Cells of several kinds are cut into tetrahedra or triangles, as those of a file are
+    (docs/scenes.md); ``notices`` says so.  Arrays then have a row for each given node or cell.
 
     All numbers are in one consistent system of units (m, N, Pa or mm, N, MPa).  The scene has
     copies of its arrays, so that these may change afterwards.
@@ -165,34 +169,25 @@ class Scene:
         origin: str = "measured",
         rigid_motion_free: bool = False,
     ) -> None:
-        positions, connectivity = _mesh_of(nodes, cells)
-        kind, elements = one_kind(positions, connectivity, kind)
-        if is_planar(kind) and positions.shape[1] == 3:
-            positions = _in_plane(positions)
-        self._core = _core.Scene(kind, positions, elements, section, thickness)
+        self._core = _core.Scene(*cells_of(nodes, cells, kind), section, thickness)
         _hold(self._core, supports, support_displacements)
         if regions is not None:
-            ids = np.asarray(regions)
-            if ids.shape != (len(elements),) or ids.dtype.kind not in "iub":
-                raise ValueError(
-                    f"regions has the shape {ids.shape} and the type {ids.dtype}; give one integer "
-                    f"for each of the {len(elements)} elements"
-                )
-            self._core.set_regions(ids.astype(np.int32))
+            self._core.set_regions(_regions(self._core, regions))
         if materials is not None:
-            self._core.set_materials(list(materials))
+            self._core.set_materials(_several("materials", materials, Material))
         self._core.set_origin(origin)
         self._core.set_rigid_motion_free(rigid_motion_free)
         one = LoadCase(forces, loads, displacements, points, noise_sd, resultants=resultants)
         given = [forces, displacements, points, noise_sd]
-        if cases is not None and (loads or resultants or any(value is not None for value in given)):
+        is_given = bool(loads) or bool(resultants) or any(value is not None for value in given)
+        if cases is not None and is_given:
             raise ValueError(
                 "cases are given, and so are forces, loads, displacements, points, noise_sd or "
                 "resultants; give these in the LoadCase that they belong to"
             )
-        for k, case in enumerate([one] if cases is None else cases):
+        for k, case in enumerate([one] if cases is None else _several("cases", cases, LoadCase)):
             _add_case(self._core, case, "" if cases is None else f"load case {k + 1}: ")
-        self._core.validate()
+        self._core.finish()
 
     @classmethod
     def _of(cls, core: _core.Scene) -> Scene:
@@ -207,12 +202,12 @@ class Scene:
 
     @property
     def nodes(self) -> Floats:
-        """Positions, shape (n, d) [length]; a view that cannot be written."""
+        """Positions, shape (n, d) [length], and those of nodes that cuts have added."""
         return self._core.nodes
 
     @property
     def elements(self) -> NDArray[np.int32]:
-        """Node numbers, shape (m, nodes of an element); a view that cannot be written."""
+        """Node numbers of the elements that are computed with; a view that cannot be written."""
         return self._core.elements
 
     @property
@@ -222,9 +217,9 @@ class Scene:
 
     @property
     def displacements(self) -> Floats:
-        """Measured displacements of the nodes in the first load case, shape (n, d) [length].
+        """Measured displacements of the given nodes in the first load case, shape (n, d) [length].
 
-        A view that cannot be written; empty where nothing was measured at nodes.
+        NaN where a component was not measured; empty where nothing was measured at nodes.
         """
         return self.displacements_of(0)
 
@@ -234,7 +229,7 @@ class Scene:
 
     @property
     def notices(self) -> list[str]:
-        """What the reader of a file had to say about it."""
+        """What is read in another way than the mesh or the file has it."""
         return self._core.notices
 
     @property
@@ -392,31 +387,52 @@ def read(
     )
 
 
-def _mesh_of(nodes: Any, cells: Any) -> tuple[Floats, Any]:
-    if is_mesh(nodes):
-        if cells is not None:
-            raise ValueError("the mesh has cells of its own; leave the cells out")
-        return take_mesh(nodes)
-    if cells is None:
-        raise ValueError("the cells are missing; give node numbers, one row for each element")
-    positions = np.asarray(nodes, dtype=float)
-    if positions.ndim != 2 or positions.shape[1] not in (2, 3):
-        raise ValueError(
-            f"nodes has the shape {positions.shape}; give one row of 2 or 3 coordinates for each node"
-        )
-    return positions, cells
+def _of_elements(core: _core.Scene, values: NDArray[Any]) -> NDArray[Any] | None:
+    """Returns a row for each element from one for each cell, or for each that is no facet or edge.
+
+    None for another number of rows.
+    """
+    cells = core.cell_of_element
+    if len(values) == core.num_cells:
+        return values[cells]
+    solid = np.unique(cells)
+    return values[np.searchsorted(solid, cells)] if len(values) == len(solid) else None
 
 
-def _in_plane(positions: Floats) -> Floats:
-    if np.ptp(positions[:, 2]) != 0:
+def _regions(core: _core.Scene, regions: ArrayLike) -> NDArray[np.int32]:
+    ids = np.asarray(regions)
+    of_elements = _of_elements(core, ids) if ids.ndim == 1 and ids.dtype.kind in "iub" else None
+    if of_elements is None:
         raise ValueError(
-            "the planar elements do not lie in a plane z = const; give coordinates in their plane"
+            f"regions has the shape {ids.shape} and the type {ids.dtype}; give one integer "
+            f"for each of the {core.num_cells} elements"
         )
-    return np.ascontiguousarray(positions[:, :2])
+    return of_elements.astype(np.int32)
+
+
+def _several(name: str, values: Any, kind: type[_T]) -> list[_T]:
+    """Returns a list of what is given, which may also be one of it."""
+    several = list(values) if isinstance(values, (list, tuple)) else [values]
+    for value in several:
+        if not isinstance(value, kind):
+            raise ValueError(
+                f"{name} has a value of the type {type(value).__name__}; give a list of {kind.__name__}"
+            )
+    return several
+
+
+def _numbers(name: str, values: ArrayLike) -> Floats:
+    """Returns an array of numbers, NaN where it is masked."""
+    try:
+        if isinstance(values, np.ma.MaskedArray):
+            return np.where(values.mask, np.nan, values.data.astype(float))
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is no array of numbers; give numbers, all rows of one length") from None
 
 
 def _rows(name: str, values: ArrayLike, count: int, dimension: int, of: str) -> Floats:
-    rows = np.asarray(values, dtype=float)
+    rows = _numbers(name, values)
     if rows.shape != (count, dimension):
         raise ValueError(
             f"{name} has the shape {rows.shape}; give ({count}, {dimension}): "
@@ -426,7 +442,7 @@ def _rows(name: str, values: ArrayLike, count: int, dimension: int, of: str) -> 
 
 
 def _hold(core: _core.Scene, supports: Any, displacement: ArrayLike | None) -> None:
-    n, d = core.nodes.shape
+    n, d = core.num_points, core.dimension
     boxes = [supports] if isinstance(supports, Box) else supports
     if isinstance(boxes, (list, tuple)) and boxes and all(isinstance(b, Box) for b in boxes):
         if displacement is not None:
@@ -444,7 +460,7 @@ def _hold(core: _core.Scene, supports: Any, displacement: ArrayLike | None) -> N
 
 def _hold_box(core: _core.Scene, box: Box) -> None:
     lower, upper = _vector(box.lower), _vector(box.upper)
-    components = None if box.components is None else np.asarray(box.components, dtype=bool)
+    components = None if box.components is None else _flags(box.components, core.dimension)
     if not isinstance(box.displacement, str):
         moved = None if box.displacement is None else _vector(box.displacement)
         core.hold_box(lower, upper, components, moved)
@@ -456,6 +472,18 @@ def _hold_box(core: _core.Scene, box: Box) -> None:
         )
 
 
+def _flags(components: Sequence[bool] | str, dimension: int) -> NDArray[np.bool_]:
+    axes = "xyz"[:dimension]
+    if isinstance(components, str) and components and set(components) <= set(axes):
+        return np.array([axis in components for axis in axes])
+    flags = np.asarray(components)
+    if flags.shape != (dimension,) or flags.dtype.kind not in "biu":
+        raise ValueError(
+            f'components={components!r}; give {dimension} flags or letters, such as "{axes[-1]}"'
+        )
+    return flags.astype(bool)
+
+
 def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
     held = np.zeros((n, d), dtype=bool)
     if supports is None:
@@ -463,6 +491,11 @@ def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
     given = np.asarray(supports)
     if given.dtype == bool and given.shape in ((n,), (n, d)):
         held[:] = given if given.ndim == 2 else given[:, np.newaxis]
+    elif given.dtype.kind in "iu" and given.shape == (n,) and n > 2 and set(given) <= {0, 1}:
+        raise ValueError(
+            f"supports is 0 or 1 for each of the {n} nodes; give flags of the type bool, or the numbers "
+            "of the nodes that are held"
+        )
     elif given.dtype.kind in "iu" and given.ndim == 1:
         wrong = given[(given < 0) | (given >= n)]
         if len(wrong):
@@ -477,12 +510,12 @@ def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
 
 
 def _vector(values: ArrayLike) -> Floats:
-    return np.asarray(values, dtype=float).reshape(-1)
+    return _numbers("a vector of a box, a load or a resultant", values).reshape(-1)
 
 
 def _facets(core: _core.Scene, where: Any) -> NDArray[np.int32]:
     if not isinstance(where, Box):
-        return np.asarray(where, dtype=np.int32)
+        return connectivity_of("the facets of a load", where).astype(np.int32)
     facets = core.facets_in_box(_vector(where.lower), _vector(where.upper))
     if len(facets) == 0:
         raise ValueError(
@@ -496,11 +529,7 @@ def _facets(core: _core.Scene, where: Any) -> NDArray[np.int32]:
 def _core_resultant(
     core: _core.Scene, resultant: Resultant, where: str
 ) -> tuple[NDArray[np.int32], Floats, Floats]:
-    dimension = core.nodes.shape[1]
-    if not isinstance(resultant, Resultant):
-        raise ValueError(
-            f"{where}a resultant is of the type {type(resultant).__name__}; give a Resultant"
-        )
+    dimension = core.dimension
     force = _vector(resultant.force)
     sd = _vector(resultant.sd)
     if force.shape != (dimension,) or sd.shape not in ((1,), (dimension,)):
@@ -517,7 +546,17 @@ def _core_resultant(
     return nodes.astype(np.int32), force, np.broadcast_to(sd, (dimension,)).copy()
 
 
-def _core_load(core: _core.Scene, load: Load) -> _core._Load:
+def _body_force(core: _core.Scene, density: Floats) -> Floats:
+    of_elements = _of_elements(core, density)
+    if of_elements is None:
+        raise ValueError(
+            f"a BodyForce has the shape {density.shape}; give {core.dimension} components, or a row "
+            f"of them for each of the {core.num_cells} elements"
+        )
+    return of_elements
+
+
+def _core_load(core: _core.Scene, load: object) -> _core._Load:
     if isinstance(load, Traction):
         return _core.Traction(_facets(core, load.where), np.atleast_2d(_vector(load.traction)))
     if isinstance(load, Pressure):
@@ -525,7 +564,8 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
     if isinstance(load, SurfaceForce):
         return _core.SurfaceForce(_facets(core, load.where), _vector(load.force))
     if isinstance(load, BodyForce):
-        return _core.BodyForce(np.atleast_2d(_vector(load.force_density)))
+        density = np.atleast_2d(_numbers("a BodyForce", load.force_density))
+        return _core.BodyForce(density if len(density) == 1 else _body_force(core, density))
     raise ValueError(
         f"a load is of the type {type(load).__name__}; give a Traction, a Pressure, a SurfaceForce "
         "or a BodyForce"
@@ -533,13 +573,16 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
 
 
 def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
-    n, d = core.nodes.shape
-    loads = [_core_load(core, load) for load in case.loads]
-    resultants = [_core_resultant(core, one, where) for one in case.resultants]
+    n, d = core.num_points, core.dimension
+    loads = [_core_load(core, load) for load in _several(f"{where}loads", case.loads, object)]
+    resultants = [
+        _core_resultant(core, one, where)
+        for one in _several(f"{where}resultants", case.resultants, Resultant)
+    ]
     if case.forces is not None:
         loads.append(_core.NodalForces(_rows(f"{where}forces", case.forces, n, d, "node")))
     if case.points is not None:
-        points = np.asarray(case.points, dtype=float)
+        points = _numbers(f"{where}points", case.points)
         if case.displacements is None:
             raise ValueError(f"{where}points are given without displacements; give both")
         of_points = _rows(f"{where}displacements", case.displacements, len(points), d, "point")
