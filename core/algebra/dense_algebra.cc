@@ -25,7 +25,14 @@ Eigen::MatrixXd ProductBy(CBLAS_TRANSPOSE transposed, const Eigen::MatrixXd& a,
                           const Eigen::MatrixXd& b) {
   const Eigen::Index num_rows = transposed == CblasTrans ? a.cols() : a.rows();
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(num_rows, b.cols());
-  if (product.size() > 0 && b.rows() > 0) {
+  if (product.size() == 0 || b.rows() == 0) {
+    return product;
+  }
+  if (b.cols() == 1) {
+    // dgemm would copy A, which takes longer than the product.
+    cblas_dgemv(CblasColMajor, transposed, int(a.rows()), int(a.cols()), 1,
+                a.data(), int(a.rows()), b.data(), 1, 0, product.data(), 1);
+  } else {
     cblas_dgemm(CblasColMajor, transposed, CblasNoTrans, int(num_rows),
                 int(b.cols()), int(b.rows()), 1, a.data(), int(a.rows()),
                 b.data(), int(b.rows()), 0, product.data(), int(num_rows));

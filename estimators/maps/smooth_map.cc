@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "elastimate/core/algebra/dense_algebra.h"
+
 namespace elastimate {
 namespace {
 
@@ -50,10 +52,38 @@ struct FieldEvidence {
                           : degrees_of_freedom * std::log(std::max(q, least))) +
            modes.LogDeterminant(k);
   }
+};
+
+// The same where delta is that of the modes alone, for many k: with the
+// coordinates U^T g, g^T delta = k (|g|^2 - sum (k lambda / (1 + k lambda))
+// (U^T g)^2).
+class EvidenceOfModes {
+ public:
+  explicit EvidenceOfModes(const FieldEvidence& evidence)
+      : evidence_(evidence),
+        gradient_(
+            ProductOfTransposed(evidence.modes.Vectors(), evidence.gradient)),
+        y_(ProductOfTransposed(evidence.modes.Vectors(), evidence.y)),
+        squares_(evidence.gradient.squaredNorm(),
+                 evidence.gradient.dot(evidence.y), evidence.y.squaredNorm()) {}
+
   double At(double log_k) const {
     const double k = std::exp(log_k);
-    return Of(k, QuadraticAt(k, modes.Solve(k, SlopeAt(k))));
+    const Eigen::ArrayXd scaled = k * evidence_.modes.Values().array();
+    const double slope_square =
+        squares_(0) - 2 * squares_(1) / k + squares_(2) / (k * k);
+    const double along_modes =
+        (scaled / (1 + scaled) * (gradient_ - y_ / k).array().square()).sum();
+    return evidence_.Of(k, evidence_.square_sum + squares_(2) / k -
+                               k * (slope_square - along_modes));
   }
+
+ private:
+  const FieldEvidence& evidence_;
+  Eigen::VectorXd gradient_;  // U^T A^T S^T Pi r.
+  Eigen::VectorXd y_;         // U^T y.
+  // |A^T S^T Pi r|^2, its product with y, and |y|^2.
+  Eigen::Vector3d squares_;
 };
 
 // Returns the k of the greatest evidence: of a scan, and then between its
@@ -61,6 +91,7 @@ struct FieldEvidence {
 // measurements: noise that is not known would then be found to be zero, and
 // where it is known, the model is wrong rather than the body that uneven.
 double BestRatio(const FieldEvidence& evidence) {
+  const EvidenceOfModes of_modes(evidence);
   constexpr int kPoints = 65;
   const double most_supported =
       evidence.degrees_of_freedom * (evidence.problem.noise ? 2.0 : 1.0) / 3;
@@ -71,7 +102,7 @@ double BestRatio(const FieldEvidence& evidence) {
   const auto value_at = [&](double log_k) {
     return evidence.modes.EffectiveNumber(std::exp(log_k)) > most_supported
                ? std::numeric_limits<double>::infinity()
-               : evidence.At(log_k);
+               : of_modes.At(log_k);
   };
   double best = lower;
   double least = value_at(lower);
@@ -226,7 +257,7 @@ double LogEvidenceByModes(const MapProblem& problem, const FieldPrior& other,
       of_other * (vectors.transpose() * map.y) / map.ratio,
       other.ApplyInverse(prior.Apply(map.y)),
       double(model.NumIndependentRows() - unknowns.Rank())};
-  return -evidence.At(std::log(BestRatio(evidence))) / 2;
+  return -EvidenceOfModes(evidence).At(std::log(BestRatio(evidence))) / 2;
 }
 
 }  // namespace elastimate
