@@ -314,7 +314,8 @@ Estimate Auto::DoRun(const Scene& scene,
   ClimbComputedLargeStrains(scene, options, ladder);
   // Where small strains do not do, it matters why large ones did not either.
   if (!of_large_strains.Has(FindingCode::kNotRun) &&
-      ladder.Last().IsRefusedFor(FindingCode::kLargeDeformation)) {
+      ladder.Last().IsRefusedFor(FindingCode::kLargeDeformation) &&
+      IsPossible(ladder.Last().deformation)) {
     ladder.Decide("not taken: the strains are too large for it");
     ladder.Last() = of_large_strains;
   }

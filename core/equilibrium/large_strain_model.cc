@@ -36,11 +36,37 @@ void LargeStrainModel::SetDilatation(Dilatation dilatation) {
   }
 }
 
+LargeStrainState LargeStrainModel::FollowModuli(Eigen::Index k) {
+  constexpr double kShortestStep = 1.0 / 4;
+  const CaseState& last = states_[k];
+  LargeStrainState found;
+  found.displacement = last.displacement;
+  double done = 0;
+  double step = 1.0 / 2;
+  while (done < 1) {
+    LargeStrainState next = equilibrium_.SolveFrom(
+        found.displacement,
+        last.moduli + (done + step) * (moduli_ - last.moduli), k);
+    if (next.status == EquilibriumStatus::kDone) {
+      found = next;
+      done += step;
+    } else if (step > kShortestStep) {
+      step /= 2;
+    } else {
+      return next;
+    }
+  }
+  return found;
+}
+
 bool LargeStrainModel::SolveInCase(Eigen::Index k,
                                    const Eigen::VectorXd& start) {
   LargeStrainState found;
   if (start.size() > 0) {
     found = equilibrium_.SolveFrom(start, moduli_, k);
+  }
+  if (found.status != EquilibriumStatus::kDone && !IsFirstSolve()) {
+    found = FollowModuli(k);
   }
   if (found.status != EquilibriumStatus::kDone) {
     found = equilibrium_.Solve(moduli_, k,

@@ -96,8 +96,12 @@ class LargeStrainModel : public ForwardModel {
   }
   Eigen::Index NumLoadCases() const { return Load().cols(); }
   /// Finds the equilibrium of load case `k`, beginning at this start.  If the
-  /// start is empty or leads to none, the search begins again at rest.
+  /// start is empty or leads to none, the search follows the moduli from those
+  /// of the last equilibrium, and then begins again at rest.
   bool SolveInCase(Eigen::Index k, const Eigen::VectorXd& start);
+  /// Changes the moduli in steps from those of the last equilibrium of load
+  /// case `k` to the present ones.  A step that fails is halved, once.
+  LargeStrainState FollowModuli(Eigen::Index k);
   bool MoveSupportsOfCase(Eigen::Index k, const Eigen::VectorXd& held);
   /// Returns the solver of load case `k`, with the factor of its tangent.
   StiffnessSolver& TangentSolver(Eigen::Index k);

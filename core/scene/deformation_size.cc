@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <utility>
@@ -313,6 +314,24 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
   return gradients;
 }
 
+// Returns the value below which a share of the values stays.
+double Quantile(double share, std::vector<double> values) {
+  const auto place =
+      values.begin() +
+      std::ptrdiff_t(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+// Returns the factor of DeformationSize::volume_change at a point.
+double VolumeChangeOf(const Eigen::MatrixXd& f) {
+  const double ratio = f.determinant();
+  if (ratio >= 1) {
+    return f.rows() == 3 ? ratio : 1;
+  }
+  return ratio > 0 ? 1 / ratio : std::numeric_limits<double>::infinity();
+}
+
 DeformationSize SizeOf(const std::vector<Eigen::MatrixXd>& gradients,
                        bool is_rigid_motion_free) {
   if (gradients.empty()) {
@@ -329,17 +348,15 @@ DeformationSize SizeOf(const std::vector<Eigen::MatrixXd>& gradients,
           : Eigen::MatrixXd(Eigen::MatrixXd::Identity(dimension, dimension));
   double square_sum = 0;
   std::vector<double> angles;
+  std::vector<double> changes;
   for (const Eigen::MatrixXd& f : gradients) {
     const Polar polar = DecomposePolar(frame.transpose() * f);
     square_sum += (polar.stretches.array() - 1).square().maxCoeff();
     angles.push_back(AngleOf(polar.rotation));
+    changes.push_back(VolumeChangeOf(f));
   }
-  const auto large =
-      angles.begin() +
-      std::ptrdiff_t(kVolumeShare * static_cast<double>(angles.size() - 1));
-  std::nth_element(angles.begin(), large, angles.end());
   return {std::sqrt(square_sum / static_cast<double>(gradients.size())),
-          *large};
+          Quantile(kVolumeShare, angles), Quantile(kVolumeShare, changes)};
 }
 
 }  // namespace
@@ -354,6 +371,7 @@ DeformationSize MeasureDeformation(const Scene& scene) {
         SizeOf(DeformationGradients(scene, load_case), is_free);
     size.strain = std::max(size.strain, of_case.strain);
     size.rotation = std::max(size.rotation, of_case.rotation);
+    size.volume_change = std::max(size.volume_change, of_case.volume_change);
   }
   return size;
 }

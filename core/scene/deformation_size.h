@@ -14,6 +14,10 @@ struct DeformationSize {
   /// The rotation [rad] below which 95 % of the volume stays.  It is relative
   /// to the supports, or to the mean rotation where a rigid motion is free.
   double rotation = 0;
+  /// The factor by which volumes grow or shrink, below which 95 % of the volume
+  /// stays; infinite if that is turned inside out.  In the plane, by which
+  /// areas shrink, because the thickness may make up for areas that grow.
+  double volume_change = 1;
 };
 
 /// Measures displacements after it has smoothed them by polynomials in the

@@ -660,14 +660,14 @@ Finding ParameterBias(const std::string& parameter, double bias,
 Finding LargeDeformation(const DeformationSize& size,
                          double relative_error_of_modulus, Severity severity,
                          bool is_rigid_motion_free) {
-  if (size.strain > kLimits.impossible_strain) {
-    return {FindingCode::kLargeDeformation, severity,
-            "the displacements make strains of " + StrainText(size.strain) +
-                ", so they are probably in another unit of length than the "
-                "coordinates, or are positions after the load",
-            "give displacements in the unit of the coordinates; if the "
-            "specimen was stretched so far, name its law, such as "
-            "--material=neo_hookean"};
+  if (size.strain > kLimits.doubtful_strain) {
+    return {
+        FindingCode::kLargeDeformation, severity,
+        "the displacements make strains of " + StrainText(size.strain) +
+            ", so they are probably in another unit of length than the "
+            "coordinates, or are positions after the load",
+        "give displacements in the unit of the coordinates, or name the law "
+        "(--material)"};
   }
   const std::string text =
       DeformationText(size) +
@@ -705,8 +705,11 @@ Finding LargeStrainsFitted(const DeformationSize& size,
   return {FindingCode::kLargeDeformation, Severity::kNotice,
           (what.empty() ? "" : "for " + what + ", ") + "the law " + law +
               " of large strains was fitted",
-          "name another law by --material if you know it, or give "
-          "--kinematics=small"};
+          size.strain > kLimits.doubtful_strain
+              ? "check that displacements have the unit of the coordinates, "
+                "and name the law by --material if you know it"
+              : "name another law by --material if you know it, or give "
+                "--kinematics=small"};
 }
 
 Finding LargeStrainLawsFitAlike(const std::string& chosen,

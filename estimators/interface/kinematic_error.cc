@@ -105,6 +105,12 @@ bool IsMentioned(const DeformationSize& size) {
          size.rotation >= kLimits.mentioned_rotation;
 }
 
+bool IsPossible(const DeformationSize& size) {
+  return size.strain < kLimits.doubtful_strain ||
+         (size.strain < kLimits.impossible_strain &&
+          size.volume_change < kLimits.volume_change_of_rubber);
+}
+
 KinematicError KinematicErrorOf(const DeformationSize& size) {
   if (!IsMentioned(size)) {
     return {0, 0};
@@ -118,12 +124,18 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
     return;
   }
   estimate.deformation = MeasureDeformation(scene);
-  if (HasLargeStrainLaw(scene.materials) ||
-      !IsMentioned(estimate.deformation)) {
+  if (HasLargeStrainLaw(scene.materials)) {
+    if (!IsPossible(estimate.deformation) && !estimate.IsUsable()) {
+      estimate.Add(LargeDeformation(estimate.deformation, 0, Severity::kWarning,
+                                    scene.is_rigid_motion_free));
+    }
+    return;
+  }
+  if (!IsMentioned(estimate.deformation)) {
     return;
   }
   if (scene.origin == Origin::kComputed) {
-    if (estimate.deformation.strain > kLimits.impossible_strain) {
+    if (estimate.deformation.strain > kLimits.doubtful_strain) {
       return;
     }
     estimate.Add(TakenAsLinear(estimate.deformation));

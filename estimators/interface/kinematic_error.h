@@ -21,6 +21,10 @@ struct KinematicError {
 KinematicError KinematicErrorOf(const DeformationSize& size);
 /// Tells whether a deformation has 1 % of strain or 3 degrees of rotation.
 [[nodiscard]] bool IsMentioned(const DeformationSize& size);
+/// Tells whether a specimen may have a deformation: strains beyond 100 % are
+/// those of rubber, which nearly keeps its volume, or of displacements in
+/// another unit of length than the coordinates.
+[[nodiscard]] bool IsPossible(const DeformationSize& size);
 
 /// Measures the deformation and, from 1 % of strain or 3 degrees of rotation
 /// on, adds what linear kinematics leave out to the covariances, the error
@@ -28,8 +32,9 @@ KinematicError KinematicErrorOf(const DeformationSize& size);
 /// it into one that is not usable, where that is more than Limits allow for
 /// biases (finding `large_deformation`).  Displacements that linear elasticity
 /// computed (Origin::kComputed) have no such error, so that a notice only asks
-/// whether they did; laws of large strains
-/// leave nothing out.  An estimate that has been through this stays as it is,
+/// whether they did.  Laws of large strains leave nothing out; if their
+/// estimate is not usable, a warning tells of deformations that no specimen has
+/// (IsPossible).  An estimate that has been through this stays as it is,
 /// and so does the joint one of a series, whose frames have.
 void JudgeKinematics(const Scene& scene, Estimate& estimate);
 

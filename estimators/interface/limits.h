@@ -88,8 +88,12 @@ struct Limits {
   /// mentions it.
   double mentioned_strain = 0.01;
   double mentioned_rotation = 0.0524;
-  /// A strain beyond this is no strain, but another unit of length.
-  double impossible_strain = 1;
+  /// A strain beyond this is that of rubber, which keeps its volume, or another
+  /// unit of length.
+  double doubtful_strain = 1;
+  double volume_change_of_rubber = 2;
+  /// No specimen has a strain beyond this; rubber breaks before.
+  double impossible_strain = 10;
 
   // What is called exact.
 

@@ -206,7 +206,7 @@ bool AsksForLargeStrains(const Scene& scene, const EstimatorOptions& options) {
     return options.kinematics == Kinematics::kLarge;
   }
   const DeformationSize size = MeasureDeformation(scene);
-  return IsMentioned(size) && size.strain < kLimits.impossible_strain;
+  return IsMentioned(size) && IsPossible(size);
 }
 
 Estimate FitLargeStrainLaws(const Scene& scene,

@@ -19,7 +19,7 @@ namespace elastimate {
 /// ones.  The options decide if they ask for small or large kinematics.  If
 /// they leave it open, it is true for measured displacements of isotropic
 /// materials, if strains or rotations are large enough to be mentioned
-/// (IsMentioned) and strains are not impossible.
+/// (IsMentioned) and are possible (IsPossible).
 [[nodiscard]] bool AsksForLargeStrains(const Scene& scene,
                                        const EstimatorOptions& options);
 

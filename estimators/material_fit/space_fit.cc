@@ -184,9 +184,15 @@ BoundedMinimum SpaceFit::WithOtherModel(BoundedMinimum best,
 std::optional<BoundedMinimum> SpaceFit::FindAtLargeStrains(
     const std::optional<Eigen::VectorXd>& start) {
   misfit_.SetDilatation(Dilatation::kMeanOfElement);
-  const std::optional<Eigen::VectorXd> from =
-      start ? StiffenedStart(*start, misfit_)
-            : SmallStrainStart(scene_, options_, misfit_, fit_.estimate.work);
+  std::optional<Eigen::VectorXd> from;
+  if (start) {
+    from = StiffenedStart(*start, misfit_);
+  }
+  if (!from) {
+    // Coarser elements may have left parameters that are not determined where
+    // these elements are unstable.
+    from = SmallStrainStart(scene_, options_, misfit_, fit_.estimate.work);
+  }
   if (!from) {
     return std::nullopt;
   }

@@ -186,6 +186,35 @@ TEST(LargeStrainModel, LosesLittleByModuliWithoutEquilibrium) {
   EXPECT_EQ(model.WorkDone().factorizations, after);
 }
 
+// A block that is pulled a little, and then by a traction of five times E.
+TEST(LargeStrainModel, FollowsModuliThatChangeFar) {
+  const Mesh mesh = BoxGrid(Eigen::Vector3i(1, 1, 1), Eigen::Vector3d::Ones());
+  Scene scene = UnsupportedScene(mesh);
+  scene.load_cases.resize(1);
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3d upper = Eigen::Vector3d::Ones();
+    upper(axis) = 0;
+    Eigen::Array<bool, 3, 1> components =
+        Eigen::Array<bool, 3, 1>::Constant(false);
+    components(axis) = true;
+    HoldInBox(Eigen::Vector3d::Zero(), upper, components,
+              Eigen::Vector3d::Zero(), scene);
+  }
+  scene.materials.resize(1);
+  scene.materials[0].law = "neo_hookean";
+  scene.load_cases[0].loads = {TractionInBox(mesh, Eigen::Vector3d(0, 0, 1),
+                                             Eigen::Vector3d::Ones(),
+                                             Eigen::Vector3d(0, 0, 0.5))};
+  LargeStrainModel model(scene);
+  const auto moduli = [&](double youngs_modulus) {
+    return model.Parameters().Moduli(Eigen::Vector2d(youngs_modulus, 0.45));
+  };
+  ASSERT_TRUE(model.Solve(moduli(2))) << model.WhyNotSolved();
+  EXPECT_LT(model.Displacement().maxCoeff(), 0.5);
+  ASSERT_TRUE(model.Solve(moduli(0.1))) << model.WhyNotSolved();
+  EXPECT_GT(model.Displacement().maxCoeff(), 3);
+}
+
 TEST(LargeStrainModel, BeginsWithDisplacementsThatAreNear) {
   const Mesh mesh = BoxGrid(Eigen::Vector3i(2, 2, 6), Eigen::Vector3d(1, 1, 6));
   Scene scene = UnsupportedScene(mesh);

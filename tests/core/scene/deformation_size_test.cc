@@ -36,6 +36,21 @@ TEST(DeformationSize, OfAStretchIsItsStrain) {
   const DeformationSize size = MeasureDeformation(BarMovedBy(Stretched));
   EXPECT_NEAR(size.strain, 0.05, 1e-9);
   EXPECT_NEAR(size.rotation, 0, 1e-6);
+  EXPECT_NEAR(size.volume_change, 1.05 * 0.985 * 0.985, 1e-9);
+}
+
+TEST(DeformationSize, OfAVolumeCountsGrowthAndShrinkage) {
+  for (const double stretch : {0.5, 2.0, -0.5}) {
+    const DeformationSize size =
+        MeasureDeformation(BarMovedBy([&](const Eigen::Vector3d& x) {
+          return Eigen::Vector3d(0, 0, (stretch - 1) * x(2));
+        }));
+    if (stretch < 0) {
+      EXPECT_TRUE(std::isinf(size.volume_change));
+    } else {
+      EXPECT_NEAR(size.volume_change, 2, 1e-9);
+    }
+  }
 }
 
 // The bar is bent to a circular arc.  It turns by 20 degrees along its length,

@@ -131,6 +131,35 @@ TEST(KinematicError, AsksForTheUnitOfImpossibleStrains) {
   ASSERT_EQ(estimate.findings[0].code, FindingCode::kLargeDeformation)
       << estimate.message;
   EXPECT_NE(estimate.message.find("unit"), std::string::npos);
+  // No law of large strains follows displacements that turn everything inside
+  // out.
+  scene.load_cases[0].displacement *= 3;
+  scene.materials.resize(1);
+  scene.materials[0].law = "neo_hookean";
+  const Estimate of_law = EstimateOf(scene, "iterative-fe");
+  EXPECT_FALSE(of_law.IsUsable());
+  EXPECT_TRUE(of_law.Has(FindingCode::kLargeDeformation));
+}
+
+// One stretch alone tells no law from another.
+TEST(KinematicError, OfRubberIsNotThatOfAnotherUnit) {
+  Scene scene = NeoHookeanCube(1.5);
+  scene.load_cases.push_back(NeoHookeanCube(0.25).load_cases[0]);
+  testing::AddNoise(1e-3, 1, scene);
+  const Estimate estimate = EstimateOf(scene, "auto");
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_EQ(estimate.large_strain_law, "neo_hookean");
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus, 1000,
+              3 * *estimate.YoungsModulusStandardError());
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3,
+              3 * *estimate.PoissonRatioStandardError());
+  // Whoever gave another unit reads of it.
+  bool asks_for_unit = false;
+  for (const Finding& finding : estimate.findings) {
+    asks_for_unit =
+        asks_for_unit || finding.advice.find("unit") != std::string::npos;
+  }
+  EXPECT_TRUE(asks_for_unit);
 }
 
 TEST(NegativePoissonRatio, AsksForSigns) {
