@@ -5,7 +5,9 @@
 #include <pybind11/pybind11.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace elastimate {
 
@@ -40,6 +42,13 @@ pybind11::array RowsOf(const Matrix& columns, const pybind11::handle& owner) {
                             owner);
   pybind11::detail::array_proxy(rows.ptr())->flags &=
       ~pybind11::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return std::move(rows);
+}
+
+/// Returns a copy of a matrix d x n as an array of shape (n, d).
+inline pybind11::array CopiedRows(const Eigen::MatrixXd& columns) {
+  pybind11::array_t<double> rows({columns.cols(), columns.rows()});
+  std::copy_n(columns.data(), columns.size(), rows.mutable_data());
   return std::move(rows);
 }
 

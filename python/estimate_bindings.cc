@@ -115,7 +115,7 @@ class PythonPrepared {
     std::vector<Eigen::MatrixXd> columns;
     columns.reserve(displacements.size());
     for (const Array<double>& rows : displacements) {
-      columns.emplace_back(ColumnsOf(rows));
+      columns.emplace_back(OfScene(columns.size(), ColumnsOf(rows)));
     }
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -126,6 +126,17 @@ class PythonPrepared {
   }
 
  private:
+  /// Returns the displacements of the nodes of the scene, or of its points, in
+  /// a load case.
+  Eigen::MatrixXd OfScene(std::size_t k, const Eigen::MatrixXd& given) const {
+    const std::vector<LoadCase>& load_cases = scene_->scene.load_cases;
+    const bool is_at_nodes =
+        k < load_cases.size() && load_cases[k].points.points.Size() == 0;
+    return is_at_nodes && scene_->given != nullptr
+               ? scene_->given->ToScene(given)
+               : given;
+  }
+
   SharedScene scene_;
   EstimatorOptions options_;
   PreparedEstimator prepared_;

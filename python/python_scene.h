@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "python/given_mesh.h"
 
 namespace elastimate {
 
@@ -15,6 +16,9 @@ struct PythonScene {
   Scene scene;
   std::vector<std::string> notices;  ///< What a reader had to say.
   double read_seconds = 0;
+  /// The mesh that the caller gave, by whose numbers Python names nodes and
+  /// cells; null for a scene from files.
+  std::shared_ptr<const GivenMesh> given;
 };
 
 using SharedScene = std::shared_ptr<const PythonScene>;

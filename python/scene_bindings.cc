@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,8 +28,10 @@
 #include "elastimate/io/scene/origin.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/scene/section.h"
+#include "elastimate/io/vtk/vtk_grid.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/given_mesh.h"
 #include "python/python_scene.h"
 #include "python/simulation.h"
 
@@ -41,18 +44,6 @@ using Numbers = Array<double>;
 using Integers = Array<int>;
 using Flags = Array<bool>;
 using Released = py::call_guard<py::gil_scoped_release>;
-
-ElementKind KindOfName(const std::string& name) {
-  std::string names;
-  for (const ElementKind kind : kElementKinds) {
-    if (TopologyOf(kind).name == name) {
-      return kind;
-    }
-    names += (names.empty() ? "" : ", ") + std::string(TopologyOf(kind).name);
-  }
-  throw std::invalid_argument("there is no element kind \"" + name +
-                              "\"; the kinds are " + names);
-}
 
 SectionModel SectionModelNamed(const std::string& name) {
   const std::optional<SectionModel> model = SectionModelOfName(name);
@@ -73,28 +64,33 @@ Origin OriginNamed(const std::string& name) {
 }
 
 std::shared_ptr<PythonScene> MakeScene(
-    const std::string& kind, const Numbers& nodes, const Integers& elements,
+    const Numbers& points, const Array<unsigned char>& types,
+    const Array<std::int64_t>& connectivity, const Array<std::int64_t>& offsets,
     const std::optional<std::string>& section, double thickness) {
-  Mesh mesh;
-  mesh.kind = KindOfName(kind);
-  mesh.section.model = section                 ? SectionModelNamed(*section)
-                       : mesh.Dimension() == 2 ? SectionModel::kPlaneStress
-                                               : SectionModel::kSolid;
-  mesh.section.thickness = thickness;
-  mesh.nodes = ColumnsOf(nodes);
-  mesh.elements = ColumnsOf(elements);
-  {
-    const py::gil_scoped_release release;
-    ValidateMesh(mesh);
-  }
+  const auto copied = [](const auto& array) {
+    return std::vector(array.data(), array.data() + array.size());
+  };
+  VtkCells cells = {ColumnsOf(points), copied(types), copied(connectivity),
+                    copied(offsets)};
+  const py::gil_scoped_release release;
   auto made = std::make_shared<PythonScene>();
-  made->scene = UnsupportedScene(std::move(mesh));
+  made->given = std::make_shared<const GivenMesh>(std::move(cells));
+  const MeshFile& file = made->given->File();
+  const SectionModel model = section ? SectionModelNamed(*section)
+                             : file.Dimension() == 2
+                                 ? SectionModel::kPlaneStress
+                                 : SectionModel::kSolid;
+  made->scene = UnsupportedScene(
+      {file.kind, {model, thickness}, made->given->Nodes(), file.elements, {}});
+  made->notices = made->given->Notices();
   return made;
 }
 
 void Hold(PythonScene& self, const Flags& held, const Numbers& displacement) {
-  self.scene.supports.held = ColumnsOf(held).array();
-  self.scene.supports.displacement = ColumnsOf(displacement);
+  Supports& supports = self.scene.supports;
+  supports.held = ColumnsOf(held).array();
+  supports.displacement = ColumnsOf(displacement);
+  self.given->Complete(supports);
 }
 
 void HoldBox(
@@ -196,6 +192,7 @@ void AddCase(PythonScene& self, const std::vector<Load>& loads,
   for (const auto& [nodes, force, sd] : resultants) {
     load_case.resultants.push_back({nodes, force, sd});
   }
+  self.given->Complete(load_case);
   self.scene.load_cases.push_back(std::move(load_case));
 }
 
@@ -292,7 +289,22 @@ std::shared_ptr<PythonScene> Simulate(const PythonScene& self,
   auto simulated = std::make_shared<PythonScene>();
   simulated->scene =
       SimulatedScene(self.scene, parameters, order, noise_sd, seed);
+  simulated->given = self.given;
   return simulated;
+}
+
+py::array Nodes(const py::object& self) {
+  const auto& scene = self.cast<const PythonScene&>();
+  return scene.given == nullptr || scene.given->IsScene()
+             ? RowsOf(scene.scene.mesh.nodes, self)
+             : CopiedRows(scene.given->Nodes());
+}
+
+py::array Elements(const py::object& self) {
+  const auto& scene = self.cast<const PythonScene&>();
+  return RowsOf(scene.given == nullptr ? scene.scene.mesh.elements
+                                       : scene.given->File().elements,
+                self);
 }
 
 const LoadCase& CaseAt(const PythonScene& self, std::size_t k) {
@@ -300,6 +312,23 @@ const LoadCase& CaseAt(const PythonScene& self, std::size_t k) {
     throw py::index_error("there is no load case " + std::to_string(k));
   }
   return self.scene.load_cases[k];
+}
+
+py::array Displacement(const py::object& self, std::size_t k) {
+  const auto& scene = self.cast<const PythonScene&>();
+  const LoadCase& load_case = CaseAt(scene, k);
+  const bool has_same_nodes = scene.given == nullptr || scene.given->IsScene();
+  if (load_case.displacement.size() == 0 ||
+      (has_same_nodes && load_case.observed.size() == 0)) {
+    return RowsOf(load_case.displacement, self);
+  }
+  Eigen::MatrixXd measured = load_case.displacement;
+  if (load_case.observed.size() > 0) {
+    measured = load_case.observed.select(
+        measured.array(), std::numeric_limits<double>::quiet_NaN());
+  }
+  return CopiedRows(has_same_nodes ? measured
+                                   : scene.given->OfPoints(measured));
 }
 
 Material MakeMaterial(
@@ -432,8 +461,9 @@ void BindScene(py::module_& module) {
   BindMaterial(module);
   BindParameter(module);
   py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene")
-      .def(py::init(&MakeScene), py::arg("kind"), py::arg("nodes"),
-           py::arg("elements"), py::arg("section"), py::arg("thickness"))
+      .def(py::init(&MakeScene), py::arg("points"), py::arg("types"),
+           py::arg("connectivity"), py::arg("offsets"), py::arg("section"),
+           py::arg("thickness"))
       .def("hold", &Hold, py::arg("held"), py::arg("displacement"))
       .def("hold_box", &HoldBox, py::arg("lower"), py::arg("upper"),
            py::arg("components"), py::arg("displacement"))
@@ -476,8 +506,10 @@ void BindScene(py::module_& module) {
            py::arg("point_displacement"), py::arg("tolerance"),
            py::arg("noise_sd"), py::arg("resultants"))
       .def(
-          "validate",
-          [](const PythonScene& self) { ValidateScene(self.scene); },
+          "finish",
+          [](PythonScene& self) {
+            self.scene = self.given->Finished(std::move(self.scene));
+          },
           Released())
       .def("with_choices", &WithChoices, py::arg("order"), py::arg("noise_sd"),
            py::arg("origin"), py::arg("map"), Released())
@@ -492,28 +524,21 @@ void BindScene(py::module_& module) {
       .def_property_readonly(
           "dimension",
           [](const PythonScene& self) { return self.scene.mesh.Dimension(); })
+      .def_property_readonly("nodes", &Nodes)
+      .def_property_readonly("elements", &Elements)
       .def_property_readonly(
-          "nodes",
-          [](const py::object& self) {
-            return RowsOf(self.cast<const PythonScene&>().scene.mesh.nodes,
-                          self);
-          })
+          "num_points",
+          [](const PythonScene& self) { return self.given->NumPoints(); })
       .def_property_readonly(
-          "elements",
-          [](const py::object& self) {
-            return RowsOf(self.cast<const PythonScene&>().scene.mesh.elements,
-                          self);
-          })
+          "num_cells",
+          [](const PythonScene& self) { return self.given->NumCells(); })
+      .def_property_readonly(
+          "cell_of_element",
+          [](const PythonScene& self) { return self.given->CellOfElement(); })
       .def_property_readonly(
           "num_cases",
           [](const PythonScene& self) { return self.scene.load_cases.size(); })
-      .def(
-          "displacement",
-          [](const py::object& self, std::size_t k) {
-            return RowsOf(
-                CaseAt(self.cast<const PythonScene&>(), k).displacement, self);
-          },
-          py::arg("load_case"))
+      .def("displacement", &Displacement, py::arg("load_case"))
       .def_readonly("notices", &PythonScene::notices);
 
   module.def("read", &Read, py::arg("paths"), py::arg("is_optional"),

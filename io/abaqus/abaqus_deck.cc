@@ -80,6 +80,7 @@ class DeckParser {
         {"NSET", &DeckParser::NodeSet},
         {"ELSET", &DeckParser::ElementSet},
         {"SURFACE", &DeckParser::Surface},
+        {"TIE", &DeckParser::Tie},
         {"SOLIDSECTION", &DeckParser::Section}};
     static const std::set<std::string> kGenerators = {
         "NGEN",   "NFILL",  "NCOPY",    "NMAP",        "ELGEN",
@@ -245,6 +246,9 @@ class DeckParser {
     if (!type.empty() && type != "ELEMENT" && type != "NODE") {
       return;  // A surface of a rigid tool.
     }
+    if (block.Has("COMBINE")) {
+      return;  // A surface that is made of others.
+    }
     const bool is_of_nodes = type == "NODE";
     AbaqusSet set =
         NewSet(block, "NAME", is_of_nodes ? Members::kNodes : Members::kFacets);
@@ -262,6 +266,8 @@ class DeckParser {
     }
     KeepIfNamed(std::move(set));
   }
+
+  void Tie(const KeywordBlock& /*block*/) { deck_.has_ties = true; }
 
   void Section(const KeywordBlock& block) {
     const std::string set = block.Option("ELSET");

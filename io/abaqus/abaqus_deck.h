@@ -56,6 +56,7 @@ struct AbaqusDeck {
   std::vector<AbaqusInstance> instances;
   /// The thickness of planar elements is zero where no *SOLID SECTION says it.
   double thickness = 0;
+  bool has_ties = false;  ///< Whether *TIE joins parts that share no nodes.
 };
 
 /// Takes the keywords apart that describe the mesh, and leaves others out.

@@ -358,6 +358,11 @@ MeshFile ReadAbaqusMesh(const std::filesystem::path& path) {
   }
   MeshFile mesh = ToMeshFile(path, numbered);
   NoteTypes(numbered, mesh);
+  if (deck.has_ties) {
+    mesh.notices.push_back(
+        "*TIE is not read, so that it does not connect what it joins; give "
+        "these parts the same nodes in the mesh tool if they are one specimen");
+  }
   SetSection(numbered, deck.thickness, mesh);
   return mesh;
 }

@@ -106,14 +106,21 @@ class FileParser {
       const KeywordBlock block = std::move(file_.blocks.back());
       file_.blocks.pop_back();
       Include(block);
+    } else if (name == "NODE" || name == "ELEMENT" || name == "NSET" ||
+               name == "ELSET") {
+      const KeywordBlock block = file_.blocks.back();
+      if (block.Has("INPUT")) {
+        Include(block);
+      }
     }
   }
 
   void Include(const KeywordBlock& block) {
-    const std::string input = block.Option("INPUT");
+    std::string input = block.Option("INPUT");
     if (input.empty()) {
-      block.Fail("*INCLUDE names no file; give INPUT=FILE");
+      block.Fail("*" + block.name + " names no file; give INPUT=FILE");
     }
+    std::replace(input.begin(), input.end(), '\\', '/');  // Of Windows.
     const std::filesystem::path path = block.file->parent_path() / input;
     const auto is_same = [&](const std::filesystem::path* open) {
       return open->lexically_normal() == path.lexically_normal();

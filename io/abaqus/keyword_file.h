@@ -48,8 +48,9 @@ struct KeywordFile {
 };
 
 /// Reads the file.  Comments (**) and blank lines are left out; a keyword line
-/// goes on where it ends with a comma.  *INCLUDE names files relative to the
-/// one that it stands in.  Throws std::invalid_argument, naming the file and
+/// goes on where it ends with a comma.  *INCLUDE, and the parameter INPUT of
+/// *NODE, *ELEMENT, *NSET and *ELSET, name files relative to the one that they
+/// stand in.  Throws std::invalid_argument, naming the file and
 /// the line, where it begins with data, a file includes itself, or a step does
 /// not end, which shows a file that was cut.  O(size of the files).
 KeywordFile ReadKeywordFile(const std::filesystem::path& path);

@@ -1,11 +1,15 @@
 #include "elastimate/io/gmsh/gmsh_mesh.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <cctype>
+#include <cstddef>
 #include <fstream>
 #include <map>
 #include <string>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/gmsh/gmsh_text_check.h"
 #include "elastimate/io/helper/mesh_program_call.h"
 #include "elastimate/io/helper/private_link.h"
@@ -45,6 +49,21 @@ void CheckEnd(const std::filesystem::path& path) {
   }
 }
 
+/// Counts the sets of a Nastran file: lines such as "SET 3 = 1 THRU 9" and
+/// cards such as SET1.
+std::size_t CountNastranSets(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::size_t count = 0;
+  for (std::string line; std::getline(file, line);) {
+    boost::algorithm::trim_left(line);
+    count += boost::algorithm::istarts_with(line, "SET") && line.size() > 3 &&
+                     (line[3] == ' ' || std::isdigit(line[3]) != 0)
+                 ? 1
+                 : 0;
+  }
+  return count;
+}
+
 }  // namespace
 
 MeshFile ReadGmshMesh(const std::filesystem::path& path) {
@@ -57,9 +76,19 @@ MeshFile ReadGmshMesh(const std::filesystem::path& path) {
   }
   // Gmsh runs what it finds in a file of that name and ".opt" beside it.
   const PrivateLink link(path, "mesh" + FileExtension(path));
-  return ReadByProgram({"elastimate-gmsh", "Gmsh", "reads Gmsh files",
-                        "open it in Gmsh and save it again"},
-                       {link.Path().string()}, path);
+  MeshFile mesh = ReadByProgram({"elastimate-gmsh", "Gmsh", "reads Gmsh files",
+                                 "open it in Gmsh and save it again"},
+                                {link.Path().string()}, path);
+  const std::size_t num_sets =
+      FileExtension(path) == ".bdf" ? CountNastranSets(path) : 0;
+  if (num_sets > 0) {
+    mesh.notices.push_back(
+        Counted(num_sets, "set") + " of this Nastran file " +
+        (num_sets == 1 ? "is" : "are") +
+        " not read; select nodes by a box in the scene.json, or have the mesh "
+        "tool export the mesh for Abaqus (.inp), whose sets are read");
+  }
+  return mesh;
 }
 
 }  // namespace elastimate

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
-#include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/core/materials/material_parameters.h"
@@ -25,6 +21,7 @@
 #include "elastimate/io/scene/json_materials.h"
 #include "elastimate/io/scene/json_scene.h"
 #include "elastimate/io/scene/mesh_reader.h"
+#include "elastimate/io/scene/scene_nodes.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -105,141 +102,6 @@ bool AreSame(const Supports& a, const Supports& b) {
                              (one.components == other.components).all();
                     });
 }
-
-/// Keeps the nodes that elements use, in their order but for the mid-edge nodes
-/// of quadratic elements, which come after all vertices.
-class SceneNodes {
- public:
-  SceneNodes(const MeshFile& file, const Mesh& mesh)
-      : position_(file.used.size(), -1) {
-    std::vector<char> is_mid_edge(file.used.size(), 0);
-    const ElementTopology& topology = mesh.Topology();
-    for (const int node :
-         mesh.elements.bottomRows(topology.num_nodes - topology.num_vertices)
-             .reshaped()) {
-      is_mid_edge[node] = 1;
-    }
-    for (const char wanted : {0, 1}) {
-      for (Eigen::Index node = 0; node < file.used.size(); ++node) {
-        if (file.used[node] && is_mid_edge[node] == wanted) {
-          position_[node] = static_cast<int>(kept_.size());
-          kept_.push_back(node);
-        }
-      }
-    }
-  }
-
-  Eigen::Index NumDropped() const { return position_.size() - kept_.size(); }
-
-  /// Returns the kept nodes as they are numbered now, in their order in the
-  /// file; empty where that order is the same.
-  std::vector<int> FileOrder() const {
-    if (std::is_sorted(kept_.begin(), kept_.end())) {
-      return {};
-    }
-    std::vector<int> order;
-    std::copy_if(position_.begin(), position_.end(), std::back_inserter(order),
-                 [](int position) { return position >= 0; });
-    return order;
-  }
-
-  Scene Filter(Scene scene) const {
-    if (NumDropped() == 0 && FileOrder().empty()) {
-      return scene;
-    }
-    KeepColumns(scene.mesh.nodes);
-    Renumber(scene.mesh.elements);
-    FilterSupports(scene.supports);
-    for (LoadCase& load_case : scene.load_cases) {
-      FilterLoadCase(load_case);
-    }
-    return scene;
-  }
-
-  NumberedNodes Numbered(const MeshFile& mesh) const {
-    NumberedNodes nodes = {mesh.path, ProgramOf(mesh), {}};
-    for (const Eigen::Index node : kept_) {
-      nodes.numbers.push_back(mesh.node_numbers.empty()
-                                  ? std::size_t(node)
-                                  : mesh.node_numbers[node]);
-    }
-    return nodes;
-  }
-
-  /// Keeps the lines of the kept nodes of a measurement of all nodes.
-  FileLines Filter(const FileLines& all) const {
-    FileLines lines = {all.file, {}};
-    for (const Eigen::Index node : kept_) {
-      lines.lines.push_back(all.lines[node]);
-    }
-    return lines;
-  }
-
-  /// Filters the frames as they are read.
-  FrameSeries Filter(FrameSeries frames) const {
-    if (NumDropped() > 0 || !FileOrder().empty()) {
-      frames.read = [nodes = *this, read = frames.read](std::size_t i) {
-        LoadCase load_case = read(i);
-        nodes.FilterLoadCase(load_case);
-        return load_case;
-      };
-    }
-    return frames;
-  }
-
- private:
-  void FilterLoadCase(LoadCase& load_case) const {
-    KeepColumns(load_case.displacement);
-    KeepColumns(load_case.observed);
-    if (load_case.supports) {
-      FilterSupports(*load_case.supports);
-    }
-    for (Resultant& resultant : load_case.resultants) {
-      Renumber(resultant.nodes);
-    }
-    for (Load& load : load_case.loads) {
-      std::visit([this](auto& kind) { FilterLoad(kind); }, load);
-    }
-  }
-  void FilterSupports(Supports& supports) const {
-    KeepColumns(supports.held);
-    KeepColumns(supports.displacement);
-    KeepColumns(supports.unknown);
-    KeepColumns(supports.delimited);
-    for (RigidFace& face : supports.rigid_faces) {
-      Renumber(face.nodes);
-    }
-  }
-  void FilterLoad(NodalForces& load) const { KeepColumns(load.force); }
-  void FilterLoad(BodyForce& /*load*/) const {}
-  void FilterLoad(Traction& load) const { Renumber(load.facets); }
-  void FilterLoad(Pressure& load) const { Renumber(load.facets); }
-  void FilterLoad(SurfaceForce& load) const { Renumber(load.facets); }
-
-  template <typename Columns>
-  void KeepColumns(Columns& columns) const {
-    if (columns.size() > 0) {
-      columns = Columns(columns(Eigen::all, kept_));
-    }
-  }
-  void Renumber(Eigen::MatrixXi& nodes) const {
-    nodes = nodes.unaryExpr([this](int node) { return position_[node]; });
-  }
-  // Numbers nodes anew and leaves out those that no element uses, which may
-  // have been selected all the same.
-  void Renumber(std::vector<int>& nodes) const {
-    std::vector<int> kept;
-    for (const int node : nodes) {
-      if (position_[node] >= 0) {
-        kept.push_back(position_[node]);
-      }
-    }
-    nodes = kept;
-  }
-
-  std::vector<int> position_;
-  std::vector<Eigen::Index> kept_;
-};
 
 void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
@@ -393,28 +255,6 @@ void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
   }
 }
 
-/// Notes how many mid-edge nodes were put into the middle, and how far, if any
-/// were.
-void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
-  if (mesh.moved.empty()) {
-    return;
-  }
-  double farthest = 0;
-  for (const auto& [node, in_file] : mesh.moved) {
-    farthest = std::max(farthest, (mesh.nodes.col(node) - in_file).norm());
-  }
-  const bool is_one = mesh.moved.size() == 1;
-  std::ostringstream sentence;
-  sentence << PrintablePath(mesh.path) << ": " << mesh.moved.size()
-           << (is_one ? " mid-edge node lies" : " mid-edge nodes lie")
-           << " beside the middle of "
-           << (is_one ? "its straight edge" : "their straight edges")
-           << ", by up to " << std::setprecision(2) << farthest
-           << ", as rounded positions do; " << (is_one ? "it was" : "they were")
-           << " put into the middle";
-  notices.push_back(sentence.str());
-}
-
 /// Gives the scene the chosen origin, and throws where its elements cannot have
 /// computed its displacements.
 void ChooseOrigin(const std::filesystem::path& path, const MeshFile& mesh,
@@ -469,22 +309,13 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   const MeshFile& mesh = file_scene.mesh;
   notices.insert(notices.end(), file_scene.notices.begin(),
                  file_scene.notices.end());
-  for (const std::string& notice : mesh.notices) {
+  const SceneNodes nodes(mesh, file_scene.scene.mesh);
+  for (const std::string& notice : nodes.Notices(mesh)) {
     notices.push_back(PrintablePath(mesh.path) + ": " + notice);
   }
-  NoteMovedNodes(mesh, notices);
-  const SceneNodes nodes(mesh, file_scene.scene.mesh);
   file_order = nodes.FileOrder();
   if (reading.nodes.numbers.empty()) {
     reading.nodes = nodes.Numbered(mesh);
-  }
-  const Eigen::Index num_dropped = nodes.NumDropped() + mesh.num_nodes_left_out;
-  if (num_dropped > 0) {
-    notices.push_back(
-        PrintablePath(mesh.path) + ": " +
-        Counted(std::size_t(num_dropped), "point") + " that no " +
-        mesh.Shape() +
-        (num_dropped == 1 ? " uses is left out" : " uses are left out"));
   }
   Scene scene = nodes.Filter(std::move(file_scene.scene));
   for (LoadCase& load_case : scene.load_cases) {
@@ -508,7 +339,7 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   if (!choices.field.empty()) {
     GiveField(choices.field, scene.materials);
   }
-  Validate(path, mesh, num_dropped > 0 || mesh.has_other_cells, scene);
+  Validate(path, mesh, nodes.NumDropped() > 0 || mesh.has_other_cells, scene);
   ChooseOrigin(path, mesh, choices.origin, scene);
   CheckObserved(path, scene);
   return scene;

@@ -83,6 +83,14 @@ std::vector<FileArray> ToArrays(vtkDataSetAttributes* attributes) {
   return arrays;
 }
 
+vtkSmartPointer<vtkTypeInt64Array> ToVtkArray(
+    const std::vector<std::int64_t>& values) {
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  array->SetNumberOfValues(vtkIdType(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
 VtkGrid ToVtkGrid(vtkUnstructuredGrid* from) {
   VtkGrid grid;
   if (from->GetPoints() != nullptr) {
@@ -292,7 +300,7 @@ std::vector<int> PointsOfCell(const std::filesystem::path& path,
     if (point < 0 || point >= grid.points.cols()) {
       ThrowInputError(path,
                       "cell " + std::to_string(cell) + " names point " +
-                          std::to_string(point) + ", but the file has " +
+                          std::to_string(point) + ", but there are " +
                           std::to_string(grid.points.cols()) +
                           " points, counted from 0; correct its connectivity");
     }
@@ -409,6 +417,19 @@ MeshFile ToMeshFile(const std::filesystem::path& path,
                 : computed == 2 ? Origin::kComputedAtLargeStrains
                                 : Origin::kMeasured;
   return mesh;
+}
+
+MeshFile ToMeshFile(const std::string& name, VtkCells cells) {
+  VtkGrid grid;
+  grid.points = std::move(cells.points);
+  grid.cell_types = std::move(cells.types);
+  grid.cells = vtkSmartPointer<vtkCellArray>::New();
+  grid.cells->SetData(ToVtkArray(cells.offsets).Get(),
+                      ToVtkArray(cells.connectivity).Get());
+  const auto num_cells = Eigen::Index(grid.cell_types.size());
+  grid.cell_arrays = {{"cell", Eigen::RowVectorXd::LinSpaced(
+                                   num_cells, 0, double(num_cells - 1))}};
+  return ToMeshFile(std::filesystem::path(name), std::move(grid));
 }
 
 void ThrowDamagedVtk(const std::filesystem::path& path,

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._cells import cells_of
 from ._core import Material, Parameter
 from ._estimate import Estimate, find_parameter
-from ._foreign_mesh import is_mesh, is_planar, one_kind, take_mesh
 
 Floats = NDArray[np.float64]
 
@@ -120,7 +120,7 @@ class Scene:
     nodes       positions, shape (n, d) with d = 3, or 2 for a planar specimen [length]; or a mesh of
                 meshio or pyvista, and then no cells
     cells       node numbers from zero, shape (m, nodes of an element), in the order of VTK; or a
-                dict of one such array by its kind
+                dict of such arrays by their kinds
     supports    which nodes are held: node numbers, flags of shape (n,) or (n, d), a Box, or a
                 list of boxes.  None for a specimen that nothing holds
     forces, loads, displacements, points, noise_sd, resultants
@@ -128,14 +128,17 @@ class Scene:
     cases       a list of LoadCase
     support_displacements
                 at which nodes are held, shape (n, d) [length]; zero where it is None
-    kind        of the elements, such as "tet4"; needed for "curved_tet10" and "curved_tri6" only
+    kind        of the elements, such as "tet4", where the number of nodes does not tell it
     section     "plane_stress" (the default of a planar specimen) or "plane_strain"
     thickness   of a planar specimen [length]
-    regions     a region id for each element, shape (m,)
+    regions     a region id for each cell, shape (m,)
     materials   a list of Material; None for one isotropic one
     origin      "computed" where these very elements computed the displacements, else "measured"
     rigid_motion_free
                 whether displacements contain an unknown rigid motion
+
+    Cells of several kinds are cut into tetrahedra or triangles, as those of a file are
+    (docs/scenes.md); ``notices`` says so.  Arrays then have a row for each given node or cell.
 
     All numbers are in one consistent system of units (m, N, Pa or mm, N, MPa).  The scene has
     copies of its arrays, so that these may change afterwards.
@@ -165,20 +168,10 @@ class Scene:
         origin: str = "measured",
         rigid_motion_free: bool = False,
     ) -> None:
-        positions, connectivity = _mesh_of(nodes, cells)
-        kind, elements = one_kind(positions, connectivity, kind)
-        if is_planar(kind) and positions.shape[1] == 3:
-            positions = _in_plane(positions)
-        self._core = _core.Scene(kind, positions, elements, section, thickness)
+        self._core = _core.Scene(*cells_of(nodes, cells, kind), section, thickness)
         _hold(self._core, supports, support_displacements)
         if regions is not None:
-            ids = np.asarray(regions)
-            if ids.shape != (len(elements),) or ids.dtype.kind not in "iub":
-                raise ValueError(
-                    f"regions has the shape {ids.shape} and the type {ids.dtype}; give one integer "
-                    f"for each of the {len(elements)} elements"
-                )
-            self._core.set_regions(ids.astype(np.int32))
+            self._core.set_regions(_regions(self._core, regions))
         if materials is not None:
             self._core.set_materials(list(materials))
         self._core.set_origin(origin)
@@ -192,7 +185,7 @@ class Scene:
             )
         for k, case in enumerate([one] if cases is None else cases):
             _add_case(self._core, case, "" if cases is None else f"load case {k + 1}: ")
-        self._core.validate()
+        self._core.finish()
 
     @classmethod
     def _of(cls, core: _core.Scene) -> Scene:
@@ -207,12 +200,12 @@ class Scene:
 
     @property
     def nodes(self) -> Floats:
-        """Positions, shape (n, d) [length]; a view that cannot be written."""
+        """Positions, shape (n, d) [length], and those of nodes that cuts have added."""
         return self._core.nodes
 
     @property
     def elements(self) -> NDArray[np.int32]:
-        """Node numbers, shape (m, nodes of an element); a view that cannot be written."""
+        """Node numbers of the elements that are computed with; a view that cannot be written."""
         return self._core.elements
 
     @property
@@ -222,9 +215,9 @@ class Scene:
 
     @property
     def displacements(self) -> Floats:
-        """Measured displacements of the nodes in the first load case, shape (n, d) [length].
+        """Measured displacements of the given nodes in the first load case, shape (n, d) [length].
 
-        A view that cannot be written; empty where nothing was measured at nodes.
+        NaN where a component was not measured; empty where nothing was measured at nodes.
         """
         return self.displacements_of(0)
 
@@ -234,7 +227,7 @@ class Scene:
 
     @property
     def notices(self) -> list[str]:
-        """What the reader of a file had to say about it."""
+        """What is read in another way than the mesh or the file has it."""
         return self._core.notices
 
     @property
@@ -392,27 +385,27 @@ def read(
     )
 
 
-def _mesh_of(nodes: Any, cells: Any) -> tuple[Floats, Any]:
-    if is_mesh(nodes):
-        if cells is not None:
-            raise ValueError("the mesh has cells of its own; leave the cells out")
-        return take_mesh(nodes)
-    if cells is None:
-        raise ValueError("the cells are missing; give node numbers, one row for each element")
-    positions = np.asarray(nodes, dtype=float)
-    if positions.ndim != 2 or positions.shape[1] not in (2, 3):
-        raise ValueError(
-            f"nodes has the shape {positions.shape}; give one row of 2 or 3 coordinates for each node"
-        )
-    return positions, cells
+def _of_elements(core: _core.Scene, values: NDArray[Any]) -> NDArray[Any] | None:
+    """Returns a row for each element from one for each cell, or for each that is no facet or edge.
+
+    None for another number of rows.
+    """
+    cells = core.cell_of_element
+    if len(values) == core.num_cells:
+        return values[cells]
+    solid = np.unique(cells)
+    return values[np.searchsorted(solid, cells)] if len(values) == len(solid) else None
 
 
-def _in_plane(positions: Floats) -> Floats:
-    if np.ptp(positions[:, 2]) != 0:
+def _regions(core: _core.Scene, regions: ArrayLike) -> NDArray[np.int32]:
+    ids = np.asarray(regions)
+    of_elements = _of_elements(core, ids) if ids.ndim == 1 and ids.dtype.kind in "iub" else None
+    if of_elements is None:
         raise ValueError(
-            "the planar elements do not lie in a plane z = const; give coordinates in their plane"
+            f"regions has the shape {ids.shape} and the type {ids.dtype}; give one integer "
+            f"for each of the {core.num_cells} elements"
         )
-    return np.ascontiguousarray(positions[:, :2])
+    return of_elements.astype(np.int32)
 
 
 def _rows(name: str, values: ArrayLike, count: int, dimension: int, of: str) -> Floats:
@@ -426,7 +419,7 @@ def _rows(name: str, values: ArrayLike, count: int, dimension: int, of: str) -> 
 
 
 def _hold(core: _core.Scene, supports: Any, displacement: ArrayLike | None) -> None:
-    n, d = core.nodes.shape
+    n, d = core.num_points, core.dimension
     boxes = [supports] if isinstance(supports, Box) else supports
     if isinstance(boxes, (list, tuple)) and boxes and all(isinstance(b, Box) for b in boxes):
         if displacement is not None:
@@ -496,7 +489,7 @@ def _facets(core: _core.Scene, where: Any) -> NDArray[np.int32]:
 def _core_resultant(
     core: _core.Scene, resultant: Resultant, where: str
 ) -> tuple[NDArray[np.int32], Floats, Floats]:
-    dimension = core.nodes.shape[1]
+    dimension = core.dimension
     if not isinstance(resultant, Resultant):
         raise ValueError(
             f"{where}a resultant is of the type {type(resultant).__name__}; give a Resultant"
@@ -517,6 +510,16 @@ def _core_resultant(
     return nodes.astype(np.int32), force, np.broadcast_to(sd, (dimension,)).copy()
 
 
+def _body_force(core: _core.Scene, density: Floats) -> Floats:
+    of_elements = _of_elements(core, density)
+    if of_elements is None:
+        raise ValueError(
+            f"a BodyForce has the shape {density.shape}; give {core.dimension} components, or a row "
+            f"of them for each of the {core.num_cells} elements"
+        )
+    return of_elements
+
+
 def _core_load(core: _core.Scene, load: Load) -> _core._Load:
     if isinstance(load, Traction):
         return _core.Traction(_facets(core, load.where), np.atleast_2d(_vector(load.traction)))
@@ -525,7 +528,8 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
     if isinstance(load, SurfaceForce):
         return _core.SurfaceForce(_facets(core, load.where), _vector(load.force))
     if isinstance(load, BodyForce):
-        return _core.BodyForce(np.atleast_2d(_vector(load.force_density)))
+        density = np.atleast_2d(np.asarray(load.force_density, dtype=float))
+        return _core.BodyForce(density if len(density) == 1 else _body_force(core, density))
     raise ValueError(
         f"a load is of the type {type(load).__name__}; give a Traction, a Pressure, a SurfaceForce "
         "or a BodyForce"
@@ -533,7 +537,7 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
 
 
 def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
-    n, d = core.nodes.shape
+    n, d = core.num_points, core.dimension
     loads = [_core_load(core, load) for load in case.loads]
     resultants = [_core_resultant(core, one, where) for one in case.resultants]
     if case.forces is not None:

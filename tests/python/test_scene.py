@@ -160,10 +160,181 @@ def test_meshes_of_meshio(arrays):
     np.testing.assert_array_equal(scene.elements, arrays["cells"])
 
 
-def test_meshes_of_pyvista_have_kinds_by_number(arrays):
-    mesh = SimpleNamespace(points=arrays["nodes"], cells_dict={10: arrays["cells"]})
+def as_pyvista(nodes, types, cells):
+    """Returns what an unstructured grid of pyvista has of cells of these types of VTK."""
+    return SimpleNamespace(
+        points=nodes,
+        cells=None,
+        celltypes=np.array(types, np.uint8),
+        cell_connectivity=np.concatenate(cells),
+        offset=np.concatenate([[0], np.cumsum([len(cell) for cell in cells])]),
+    )
+
+
+def test_meshes_of_pyvista(arrays):
+    mesh = as_pyvista(arrays["nodes"], [10] * len(arrays["cells"]), arrays["cells"])
     scene = em.Scene(mesh, supports=arrays["supports"], forces=arrays["forces"])
     np.testing.assert_array_equal(scene.elements, arrays["cells"])
+
+
+# The ends of the edges of cells, in the order of VTK.
+EDGES = {
+    "hexahedron": [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4),
+                   (0, 4), (1, 5), (2, 6), (3, 7)],
+    "wedge": [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
+    "tetra": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+}  # fmt: skip
+
+
+def bar(order, seed=None):
+    """Returns a bar of six tetrahedra, two wedges and a hexahedron along x, by their names in meshio.
+
+    Its size is 3 x 1 x 1.  Order 2 puts a node into the middle of each edge.  A seed shuffles the
+    nodes, and adds some that no cell uses.
+    """
+    nodes = np.array([[x, y, z] for x in range(4) for y in (0, 1) for z in (0, 1)], dtype=float)
+    corner = lambda x, y, z: (x * 2 + y) * 2 + z
+    unit, along = np.eye(3, dtype=int), [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)]
+    tets = [[corner(*p) for p in (0 * unit[0], unit[a], unit[a] + unit[b], (1, 1, 1))] for a, b in along]
+    bases = [[(1, 0), (2, 0), (2, 1)], [(1, 0), (2, 1), (1, 1)]]
+    wedges = [[corner(x, y, z) for z in (0, 1) for x, y in base] for base in bases]
+    square = [(2, 0), (3, 0), (3, 1), (2, 1)]
+    cells = {
+        "tetra": np.array(tets),
+        "wedge": np.array(wedges),
+        "hexahedron": np.array([[corner(x, y, z) for z in (0, 1) for x, y in square]]),
+    }
+    if order == 2:
+        middles = {}
+        for name, of_kind in cells.items():
+            ends = [[tuple(sorted(cell[list(edge)])) for edge in EDGES[name]] for cell in of_kind]
+            new = [[middles.setdefault(e, len(nodes) + len(middles)) for e in row] for row in ends]
+            cells[name] = np.hstack([of_kind, new])
+        nodes = np.concatenate([nodes, [nodes[list(edge)].mean(axis=0) for edge in middles]])
+        cells = {f"{name}{of_kind.shape[1]}": of_kind for name, of_kind in cells.items()}
+    if seed is not None:
+        number = np.random.default_rng(seed).permutation(len(nodes) + 3)[: len(nodes)]
+        shuffled = np.full((len(nodes) + 3, 3), 7.0)
+        shuffled[number] = nodes
+        nodes, cells = shuffled, {name: number[of_kind] for name, of_kind in cells.items()}
+    return nodes, cells
+
+
+def pulled(nodes):
+    """Returns the flags of supports that let a bar along x narrow, and its displacement for E = 100,
+    nu = 0.25 and a traction of 8: u = s (x, -nu y, -nu z) / E."""
+    return nodes == 0, 0.08 * nodes * [1, -0.25, -0.25]
+
+
+END = em.Box([3, 0, 0], [3, 1, 1])
+
+
+@pytest.mark.parametrize("order, seed", [(1, None), (1, 5), (2, None), (2, 5)])
+def test_cells_of_several_kinds_are_cut(order, seed):
+    meshio = pytest.importorskip("meshio")
+    nodes, cells = bar(order, seed)
+    held, expected = pulled(nodes)
+    used = np.isin(np.arange(len(nodes)), np.concatenate([c.ravel() for c in cells.values()]))
+    loads = [em.Traction([8, 0, 0], END)]
+    scene = em.Scene(meshio.Mesh(nodes, cells), supports=held, loads=loads)
+    assert scene.kind == ("tet4" if order == 1 else "tet10")
+    assert "are read as 18 tetrahedra" in scene.notices[0]
+    u = scene.simulate(E=100, nu=0.25).displacements
+    assert u.shape == nodes.shape
+    np.testing.assert_allclose(u[used], expected[used], atol=1e-13)
+    assert np.isnan(u[~used]).all()
+    np.testing.assert_array_equal(scene.nodes[: len(nodes)], nodes)
+    volumes = np.linalg.det(scene.nodes[scene.elements[:, 1:4]] - scene.nodes[scene.elements[:, :1]])
+    assert np.abs(volumes).sum() / 6 == pytest.approx(3)
+    # The added nodes were not measured, so that the values there do not count.
+    measured = em.Scene(nodes, cells, supports=held, loads=loads, displacements=u)
+    np.testing.assert_array_equal(measured.displacements, u)
+    estimate = measured.estimate("iterative-fe")
+    assert estimate["E"].value == pytest.approx(100, rel=1e-6)
+    run = em.Scene(nodes, cells, supports=held, loads=loads).prepare("iterative-fe").run(2 * u)
+    assert run["E"].value == pytest.approx(50, rel=1e-6)
+
+
+def test_cells_of_a_mesh_are_those_of_its_file(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    nodes, cells = bar(2)
+    held, _ = pulled(nodes)
+    force = np.where(nodes[:, :1] == 3, [[8.0, 0, 0]], 0)
+    mesh = meshio.Mesh(nodes, cells, point_data={"fixed": held * 1.0, "force": force})
+    mesh.write(tmp_path / "bar.vtu")
+    read = em.read(tmp_path / "bar.vtu", measured=False)
+    scene = em.Scene(mesh, supports=held, forces=force)
+    np.testing.assert_array_equal(scene.elements, read.elements)
+    np.testing.assert_array_equal(scene.nodes, read.nodes)
+    np.testing.assert_allclose(
+        scene.simulate(E=1, nu=0).displacements,
+        read.simulate(E=1, nu=0).displacements[: len(nodes)],
+        rtol=1e-9,
+        atol=1e-12,
+    )
+
+
+def test_regions_and_weights_are_those_of_cells():
+    nodes, cells = bar(1)
+    cells = {"triangle": [[0, 1, 2]], **cells}
+    held = nodes[:, 0] == 0
+    solid = np.array([1] * 6 + [2] * 2 + [3])
+    materials = [em.Material(regions=[r]) for r in (1, 2, 3)]
+    values = {f"{s} of region {r}": v for r in (1, 2, 3) for s, v in (("E", 10.0**r), ("nu", 0.2))}
+    density = np.outer(solid == 3, [1.0, 0, 0])
+    u = [
+        em.Scene(nodes, cells, supports=held, regions=r, materials=materials, loads=[em.BodyForce(b)])
+        .simulate(values)
+        .displacements
+        for r, b in [(solid, density), (np.append(9, solid), np.insert(density, 0, 7, axis=0))]
+    ]
+    np.testing.assert_array_equal(u[0], u[1])
+    # A force of 1 stretches the soft part about ten times as much as the next one.
+    end = lambda x: u[0][nodes[:, 0] == x, 0].mean()
+    assert 7 < end(1) / (end(2) - end(1)) < 14
+    with pytest.raises(ValueError, match="one integer for each of the 10 elements"):
+        em.Scene(nodes, cells, regions=[1, 2], supports=held)
+    with pytest.raises(ValueError, match="a row of them for each of the 10 elements"):
+        em.Scene(nodes, cells, loads=[em.BodyForce(np.ones((4, 3)))], supports=held)
+
+
+def test_facets_of_four_nodes_are_cut_as_cells_are():
+    nodes, cells = bar(1, seed=2)
+    held, expected = pulled(nodes)
+    corners = [[3, 0, 0], [3, 1, 0], [3, 1, 1], [3, 0, 1]]
+    facet = [int(np.flatnonzero((nodes == corner).all(axis=1))[0]) for corner in corners]
+    used = nodes[:, 0] < 7
+    scene = em.Scene(nodes, cells, supports=held, loads=[em.Traction([8, 0, 0], [facet])])
+    u = scene.simulate(E=100, nu=0.25).displacements
+    np.testing.assert_allclose(u[used], expected[used], atol=1e-13)
+    unused = int(np.flatnonzero(~used)[0])
+    for node in (unused, -1, 99):
+        with pytest.raises(ValueError, match=f"names node {node}, which no element uses"):
+            em.Scene(nodes, cells, loads=[em.Traction([8, 0, 0], [[node, *facet[1:]]])])
+        with pytest.raises(ValueError, match=f"names node {node}, which no element uses"):
+            em.Scene(nodes, cells, resultants=[em.Resultant([1, 0, 0], [node], 1)])
+
+
+def test_middle_nodes_may_stand_among_vertices():
+    meshio = pytest.importorskip("meshio")
+    nodes, cells = bar(2, seed=3)
+    held, expected = pulled(nodes)
+    tets = cells["tetra10"]
+    mesh = meshio.Mesh(nodes, {"tetra10": tets})
+    pull = em.Traction([8, 0, 0], em.Box([1, 0, 0], [1, 1, 1]))
+    scene = em.Scene(mesh, supports=held, loads=[pull])
+    np.testing.assert_array_equal(scene.elements, tets)
+    np.testing.assert_array_equal(scene.nodes, nodes)
+    assert "29 points that no tetrahedron uses are left out" in scene.notices[0]
+    u = scene.simulate(E=100, nu=0.25).displacements
+    np.testing.assert_allclose(u[np.unique(tets)], expected[np.unique(tets)], atol=1e-13)
+
+
+def test_elements_that_were_cut_did_not_compute_displacements():
+    nodes, cells = bar(1)
+    held, u = pulled(nodes)
+    with pytest.raises(ValueError, match="cells of the mesh were cut into tetrahedra"):
+        em.Scene(nodes, cells, supports=held, displacements=u, origin="computed")
 
 
 @pytest.mark.parametrize(
@@ -174,7 +345,12 @@ def test_meshes_of_pyvista_have_kinds_by_number(arrays):
         ({"supports": np.zeros(3, dtype=bool)}, "supports has the shape"),
         ({"cells": [[0, 1, 2, 99]]}, "99"),
         ({"cells": [[0, 1, 2]]}, "no element kind with 3 nodes in 3 dimensions"),
-        ({"kind": "tet5"}, "there is no element kind"),
+        ({"kind": "tet5"}, 'there is no element kind "tet5"'),
+        ({"cells": [[0, 1, 2, 2**40]]}, f"cell 0 names point {2**40}, but there are 27 points"),
+        ({"cells": np.zeros((0, 4), int)}, "the mesh has no elements"),
+        ({"cells": np.zeros((3, 4))}, "type float64; give integers"),
+        ({"nodes": [["a", "b", "c"]]}, "nodes is no array of numbers"),
+        ({"cells": {"polygon": [[0, 1, 2, 3]]}}, 'there is no element kind "polygon"'),
         ({"displacements": np.zeros((3, 3))}, "displacements has the shape"),
         ({"regions": [1]}, "one integer for each of the 48 elements"),
         ({"origin": "guessed"}, "must be \"measured\" or \"computed\""),
@@ -242,16 +418,7 @@ def test_a_grip_that_moved_and_a_load_cell_tell_the_modulus(arrays):
         em.Scene(**arrays, supports=[bottom], resultants=[em.Resultant([1.0], [0], 1.0)])
 
 
-def test_cells_of_several_kinds_are_refused_in_a_sentence(arrays):
+def test_rows_of_different_lengths_are_refused_in_a_sentence(arrays):
     arrays["cells"] = [[0, 1, 2, 3], [0, 1, 2, 3, 4, 5, 6, 7]]
-    with pytest.raises(ValueError, match="the cells have different numbers of nodes"):
+    with pytest.raises(ValueError, match="the cells have different numbers of nodes; give a dict"):
         em.Scene(**arrays)
-
-
-def test_cells_that_are_to_be_cut_are_not_left_out(arrays):
-    mesh = SimpleNamespace(
-        points=arrays.pop("nodes"),
-        cells_dict={"tetra": arrays.pop("cells"), "wedge": np.array([[0, 1, 2, 3, 4, 5]])},
-    )
-    with pytest.raises(ValueError, match=r"cells that are to be cut \(wedge\); save it as a .vtu"):
-        em.Scene(mesh, **arrays)

@@ -154,6 +154,11 @@ TEST_F(AbaqusMeshTest, ReadsWhatIsIncluded) {
   folder_.Write("nodes.inc", text.substr(0, place));
   EXPECT_EQ(Read("*Include, input=nodes.inc\n" + text.substr(place)).elements,
             Read(text).elements);
+  // As Windows writes it, and as a parameter of a keyword.
+  const std::size_t data = text.find("1, 0, 0, 0");
+  folder_.Write("sub/nodes.txt", text.substr(data, place - data));
+  EXPECT_EQ(Read("*NODE, INPUT=sub\\nodes.txt\n" + text.substr(place)).nodes,
+            Read(text).nodes);
   EXPECT_THAT(WhyNot("*Include, input=none.inc\n"), HasSubstr("no such file"));
   EXPECT_THAT(WhyNot("*Include, input=mesh.inp\n"),
               HasSubstr("line 1: the file includes itself"));
@@ -197,6 +202,16 @@ TEST_F(AbaqusMeshTest, ReadsReducedIntegrationWithANotice) {
   EXPECT_EQ(mesh.elements, Read(TwoFlatTetrahedra()).elements);
   ASSERT_EQ(mesh.notices.size(), 1U);
   EXPECT_THAT(mesh.notices[0], HasSubstr("C3D4H are read as C3D4"));
+}
+
+TEST_F(AbaqusMeshTest, SaysWhatDoesNotConnectParts) {
+  const std::string surfaces =
+      "*SURFACE, NAME=ALL, COMBINE=UNION\nTOP, OTHER\n";
+  EXPECT_TRUE(Read(TwoFlatTetrahedra() + surfaces).notices.empty());
+  const MeshFile tied =
+      Read(TwoFlatTetrahedra() + surfaces + "*TIE, NAME=T\nTOP, ALL\n");
+  ASSERT_EQ(tied.notices.size(), 1);
+  EXPECT_THAT(tied.notices[0], HasSubstr("*TIE is not read"));
 }
 
 TEST_F(AbaqusMeshTest, ReadsPlanarElementsWithTheirSection) {

@@ -127,6 +127,21 @@ TEST_F(GmshMeshTest, ReadsWhatGmshWrites) {
   }
 }
 
+TEST_F(GmshMeshTest, SaysThatSetsOfNastranAreNotRead) {
+  const std::string mesh =
+      "BEGIN BULK\n"
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\n"
+      "GRID,4,,0.,0.,1.\nCTETRA,1,1,1,2,3,4\nENDDATA\n";
+  const std::string sets = "SET 3 = 1 THRU 3\n set 5 = 4\nSETTINGS\n";
+  const auto notices = [&](const std::string& text) {
+    return ReadMeshFile(folder_.Write("m.bdf", text)).notices;
+  };
+  EXPECT_TRUE(notices(mesh).empty());
+  ASSERT_EQ(notices(sets + mesh).size(), 1);
+  EXPECT_THAT(notices(sets + mesh)[0],
+              testing::StartsWith("2 sets of this Nastran file are not read"));
+}
+
 TEST_F(GmshMeshTest, ReadsASceneFromNodeData) {
   for (const std::string& content :
        {GmshVersion1Scene(), GmshVersion2Scene(), GmshVersion4Scene()}) {

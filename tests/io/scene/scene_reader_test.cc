@@ -422,7 +422,7 @@ TEST_F(SceneReaderTest, ErrsWhenNothingIsObserved) {
 
 TEST_F(SceneReaderTest, ErrsOnPointsOutOfRange) {
   EXPECT_THROWS_WITH(Read(Replaced(LegacySceneText(), "0 1 3 5", "0 1 3 6")),
-                     "scene.vtk: cell 3 names point 6, but the file has 6 "
+                     "scene.vtk: cell 3 names point 6, but there are 6 "
                      "points");
   EXPECT_THROWS_WITH(Read(Replaced(LegacySceneText(), "0 1 3 5", "0 -1 3 5")),
                      "cell 3 names point -1");
