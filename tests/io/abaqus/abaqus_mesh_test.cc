@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>
@@ -156,6 +157,7 @@ TEST_F(AbaqusMeshTest, ReadsWhatIsIncluded) {
             Read(text).elements);
   // As Windows writes it, and as a parameter of a keyword.
   const std::size_t data = text.find("1, 0, 0, 0");
+  std::filesystem::create_directory(folder_.Path() / "sub");
   folder_.Write("sub/nodes.txt", text.substr(data, place - data));
   EXPECT_EQ(Read("*NODE, INPUT=sub\\nodes.txt\n" + text.substr(place)).nodes,
             Read(text).nodes);
