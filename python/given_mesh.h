@@ -9,7 +9,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/scene_nodes.h"
-#include "elastimate/io/vtk/vtk_grid.h"
+#include "elastimate/io/vtk/vtk_cells.h"
 
 namespace elastimate {
 

@@ -28,7 +28,7 @@
 #include "elastimate/io/scene/origin.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/scene/section.h"
-#include "elastimate/io/vtk/vtk_grid.h"
+#include "elastimate/io/vtk/vtk_cells.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/given_mesh.h"

@@ -31,6 +31,7 @@
 #include "elastimate/io/mesh/simplices.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
+#include "elastimate/io/vtk/vtk_cells.h"
 
 namespace elastimate {
 namespace {

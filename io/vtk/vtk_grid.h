@@ -1,11 +1,8 @@
 #ifndef ELASTIMATE_IO_VTK_VTK_GRID_H_
 #define ELASTIMATE_IO_VTK_VTK_GRID_H_
 
-#include <Eigen/Core>
-#include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/vtk/vtk_messages.h"
@@ -20,22 +17,6 @@ namespace elastimate {
 /// that are not all of one ElementKind, and for parts that do not agree.
 MeshFile ToMeshFile(const std::filesystem::path& path,
                     vtkUnstructuredGrid* grid);
-
-/// Cells of another program, with their types and the order of their points as
-/// in VTK.
-struct VtkCells {
-  Eigen::Matrix3Xd points;
-  std::vector<unsigned char> types;
-  /// The points of all cells, one cell after another.
-  std::vector<std::int64_t> connectivity;
-  /// Where the points of each cell begin in there, and the end of the last one.
-  std::vector<std::int64_t> offsets;
-};
-
-/// Returns the mesh that a file of these cells holds, with the place of the
-/// cell of each element in the element array `cell`.  `name` stands for the
-/// file in the errors, which are those of a grid.
-MeshFile ToMeshFile(const std::string& name, VtkCells cells);
 
 /// Throws std::invalid_argument: "FILE: the file is damaged or not a VTK file
 /// of an unstructured grid (REASON); write it again".

@@ -52,7 +52,7 @@ def cells_of(nodes: Any, cells: Any, kind: str | None) -> Cells:
     points = _points(nodes)
     if isinstance(cells, Mapping):
         return _joined(points, list(cells.items()))
-    connectivity = _connectivity(cells)
+    connectivity = connectivity_of("the cells", cells)
     dimension = np.asarray(nodes).shape[1]
     return _joined(points, [(kind or _kind_of(dimension, connectivity.shape[1]), connectivity)])
 
@@ -71,35 +71,33 @@ def _points(nodes: Any) -> NDArray[np.float64]:
     return points
 
 
-def _connectivity(cells: ArrayLike) -> NDArray[np.int64]:
+def connectivity_of(name: str, cells: ArrayLike) -> NDArray[np.int64]:
+    """Returns node numbers, one row for each cell or facet."""
     try:
         connectivity = np.asarray(cells)
     except ValueError:  # NumPy makes no array of rows of different lengths.
         raise ValueError(
-            "the cells have different numbers of nodes; give a dict with an array for each kind, such "
-            'as {"hex8": ..., "wedge6": ...}'
+            f"{name} have different numbers of nodes; give a dict of cells with an array for each kind, "
+            'such as {"hex8": ..., "wedge6": ...}'
         ) from None
     if connectivity.ndim != 2 or connectivity.dtype.kind not in "iu":
         raise ValueError(
-            f"the cells have the shape {connectivity.shape} and the type {connectivity.dtype}; give "
-            "integers, one row of node numbers for each element"
+            f"{name} have the shape {connectivity.shape} and the type {connectivity.dtype}; give "
+            "integers, one row of node numbers for each of them"
         )
     return connectivity.astype(np.int64, copy=False)
 
 
-def _joined(points: NDArray[np.float64], blocks: list[tuple[Any, Any]]) -> Cells:
-    types, connectivity, counts = [], [], []
+def _joined(points: NDArray[np.float64], blocks: list[tuple[str, Any]]) -> Cells:
+    types, connectivity, counts = np.zeros(0, int), np.zeros(0, int), np.zeros(0, int)
     for kind, of_kind in blocks:
         if kind not in _TYPES:
-            raise ValueError(
-                f'there is no element kind "{kind}"; the kinds are {", ".join(_TYPES)}'
-            )
-        rows = _connectivity(of_kind)
-        types.append(np.full(len(rows), _TYPES[kind], np.uint8))
-        connectivity.append(rows.ravel())
-        counts.append(np.full(len(rows), rows.shape[1]))
-    joined = [np.concatenate(parts) if parts else np.zeros(0, int) for parts in (types, connectivity, counts)]
-    return Cells(points, *_flat(joined[0], joined[1], np.concatenate([[0], np.cumsum(joined[2])])))
+            raise ValueError(f'there is no element kind "{kind}"; the kinds are {", ".join(_TYPES)}')
+        rows = connectivity_of("the cells", of_kind)
+        types = np.append(types, np.full(len(rows), _TYPES[kind]))
+        connectivity = np.append(connectivity, rows)
+        counts = np.append(counts, np.full(len(rows), rows.shape[1]))
+    return Cells(points, *_flat(types, connectivity, np.append(0, np.cumsum(counts))))
 
 
 def _flat(

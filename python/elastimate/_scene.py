@@ -5,24 +5,25 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, Mapping, Sequence, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._cells import cells_of
+from ._cells import cells_of, connectivity_of
 from ._core import Material, Parameter
 from ._estimate import Estimate, find_parameter
 
 Floats = NDArray[np.float64]
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, eq=False)
 class Box:
     """A part of space, bounds included: the corners have d coordinates [length].
 
-    As a support it holds ``components`` (d flags; all by default) of its nodes at a
+    As a support it holds ``components`` (d flags, or "xz"; all by default) of its nodes at a
     ``displacement`` [length], zero by default.  The displacement "measured" is for a support that
     moved by amounts that the measurement at its nodes tells, and "rigid" for one that moved as a
     rigid body, such as a grip.
@@ -30,7 +31,7 @@ class Box:
 
     lower: ArrayLike
     upper: ArrayLike
-    components: Sequence[bool] | None = None
+    components: Sequence[bool] | str | None = None
     displacement: ArrayLike | str | None = None
 
 
@@ -173,17 +174,18 @@ class Scene:
         if regions is not None:
             self._core.set_regions(_regions(self._core, regions))
         if materials is not None:
-            self._core.set_materials(list(materials))
+            self._core.set_materials(_several("materials", materials, Material))
         self._core.set_origin(origin)
         self._core.set_rigid_motion_free(rigid_motion_free)
         one = LoadCase(forces, loads, displacements, points, noise_sd, resultants=resultants)
         given = [forces, displacements, points, noise_sd]
-        if cases is not None and (loads or resultants or any(value is not None for value in given)):
+        is_given = bool(loads) or bool(resultants) or any(value is not None for value in given)
+        if cases is not None and is_given:
             raise ValueError(
                 "cases are given, and so are forces, loads, displacements, points, noise_sd or "
                 "resultants; give these in the LoadCase that they belong to"
             )
-        for k, case in enumerate([one] if cases is None else cases):
+        for k, case in enumerate([one] if cases is None else _several("cases", cases, LoadCase)):
             _add_case(self._core, case, "" if cases is None else f"load case {k + 1}: ")
         self._core.finish()
 
@@ -408,8 +410,29 @@ def _regions(core: _core.Scene, regions: ArrayLike) -> NDArray[np.int32]:
     return of_elements.astype(np.int32)
 
 
+def _several(name: str, values: Any, kind: type[_T]) -> list[_T]:
+    """Returns a list of what is given, which may also be one of it."""
+    several = list(values) if isinstance(values, (list, tuple)) else [values]
+    for value in several:
+        if not isinstance(value, kind):
+            raise ValueError(
+                f"{name} has a value of the type {type(value).__name__}; give a list of {kind.__name__}"
+            )
+    return several
+
+
+def _numbers(name: str, values: ArrayLike) -> Floats:
+    """Returns an array of numbers, NaN where it is masked."""
+    try:
+        if isinstance(values, np.ma.MaskedArray):
+            return np.where(values.mask, np.nan, values.data.astype(float))
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is no array of numbers; give numbers, all rows of one length") from None
+
+
 def _rows(name: str, values: ArrayLike, count: int, dimension: int, of: str) -> Floats:
-    rows = np.asarray(values, dtype=float)
+    rows = _numbers(name, values)
     if rows.shape != (count, dimension):
         raise ValueError(
             f"{name} has the shape {rows.shape}; give ({count}, {dimension}): "
@@ -437,7 +460,7 @@ def _hold(core: _core.Scene, supports: Any, displacement: ArrayLike | None) -> N
 
 def _hold_box(core: _core.Scene, box: Box) -> None:
     lower, upper = _vector(box.lower), _vector(box.upper)
-    components = None if box.components is None else np.asarray(box.components, dtype=bool)
+    components = None if box.components is None else _flags(box.components, core.dimension)
     if not isinstance(box.displacement, str):
         moved = None if box.displacement is None else _vector(box.displacement)
         core.hold_box(lower, upper, components, moved)
@@ -449,6 +472,18 @@ def _hold_box(core: _core.Scene, box: Box) -> None:
         )
 
 
+def _flags(components: Sequence[bool] | str, dimension: int) -> NDArray[np.bool_]:
+    axes = "xyz"[:dimension]
+    if isinstance(components, str) and components and set(components) <= set(axes):
+        return np.array([axis in components for axis in axes])
+    flags = np.asarray(components)
+    if flags.shape != (dimension,) or flags.dtype.kind not in "biu":
+        raise ValueError(
+            f'components={components!r}; give {dimension} flags or letters, such as "{axes[-1]}"'
+        )
+    return flags.astype(bool)
+
+
 def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
     held = np.zeros((n, d), dtype=bool)
     if supports is None:
@@ -456,6 +491,11 @@ def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
     given = np.asarray(supports)
     if given.dtype == bool and given.shape in ((n,), (n, d)):
         held[:] = given if given.ndim == 2 else given[:, np.newaxis]
+    elif given.dtype.kind in "iu" and given.shape == (n,) and n > 2 and set(given) <= {0, 1}:
+        raise ValueError(
+            f"supports is 0 or 1 for each of the {n} nodes; give flags of the type bool, or the numbers "
+            "of the nodes that are held"
+        )
     elif given.dtype.kind in "iu" and given.ndim == 1:
         wrong = given[(given < 0) | (given >= n)]
         if len(wrong):
@@ -470,12 +510,12 @@ def _held(supports: ArrayLike | None, n: int, d: int) -> NDArray[np.bool_]:
 
 
 def _vector(values: ArrayLike) -> Floats:
-    return np.asarray(values, dtype=float).reshape(-1)
+    return _numbers("a vector of a box, a load or a resultant", values).reshape(-1)
 
 
 def _facets(core: _core.Scene, where: Any) -> NDArray[np.int32]:
     if not isinstance(where, Box):
-        return np.asarray(where, dtype=np.int32)
+        return connectivity_of("the facets of a load", where).astype(np.int32)
     facets = core.facets_in_box(_vector(where.lower), _vector(where.upper))
     if len(facets) == 0:
         raise ValueError(
@@ -490,10 +530,6 @@ def _core_resultant(
     core: _core.Scene, resultant: Resultant, where: str
 ) -> tuple[NDArray[np.int32], Floats, Floats]:
     dimension = core.dimension
-    if not isinstance(resultant, Resultant):
-        raise ValueError(
-            f"{where}a resultant is of the type {type(resultant).__name__}; give a Resultant"
-        )
     force = _vector(resultant.force)
     sd = _vector(resultant.sd)
     if force.shape != (dimension,) or sd.shape not in ((1,), (dimension,)):
@@ -520,7 +556,7 @@ def _body_force(core: _core.Scene, density: Floats) -> Floats:
     return of_elements
 
 
-def _core_load(core: _core.Scene, load: Load) -> _core._Load:
+def _core_load(core: _core.Scene, load: object) -> _core._Load:
     if isinstance(load, Traction):
         return _core.Traction(_facets(core, load.where), np.atleast_2d(_vector(load.traction)))
     if isinstance(load, Pressure):
@@ -528,7 +564,7 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
     if isinstance(load, SurfaceForce):
         return _core.SurfaceForce(_facets(core, load.where), _vector(load.force))
     if isinstance(load, BodyForce):
-        density = np.atleast_2d(np.asarray(load.force_density, dtype=float))
+        density = np.atleast_2d(_numbers("a BodyForce", load.force_density))
         return _core.BodyForce(density if len(density) == 1 else _body_force(core, density))
     raise ValueError(
         f"a load is of the type {type(load).__name__}; give a Traction, a Pressure, a SurfaceForce "
@@ -538,12 +574,15 @@ def _core_load(core: _core.Scene, load: Load) -> _core._Load:
 
 def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
     n, d = core.num_points, core.dimension
-    loads = [_core_load(core, load) for load in case.loads]
-    resultants = [_core_resultant(core, one, where) for one in case.resultants]
+    loads = [_core_load(core, load) for load in _several(f"{where}loads", case.loads, object)]
+    resultants = [
+        _core_resultant(core, one, where)
+        for one in _several(f"{where}resultants", case.resultants, Resultant)
+    ]
     if case.forces is not None:
         loads.append(_core.NodalForces(_rows(f"{where}forces", case.forces, n, d, "node")))
     if case.points is not None:
-        points = np.asarray(case.points, dtype=float)
+        points = _numbers(f"{where}points", case.points)
         if case.displacements is None:
             raise ValueError(f"{where}points are given without displacements; give both")
         of_points = _rows(f"{where}displacements", case.displacements, len(points), d, "point")

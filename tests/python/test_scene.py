@@ -92,6 +92,24 @@ def test_what_was_not_measured_is_not_used(arrays):
     assert estimate["E"].value == pytest.approx(1e4, rel=1e-6)
 
 
+def test_masked_values_were_not_measured(arrays):
+    u = em.Scene(**arrays).simulate(E=1e4, nu=0.3).displacements
+    masked = np.ma.masked_where(np.arange(81).reshape(27, 3) % 7 == 0, u)
+    scene = em.Scene(**arrays, displacements=np.ma.array(masked.filled(1e3), mask=masked.mask))
+    np.testing.assert_array_equal(scene.displacements, masked.filled(np.nan))
+
+
+def test_one_load_and_letters_stand_for_lists(arrays):
+    arrays.pop("forces")
+    arrays["supports"] = em.Box([0, 0, 0], [0.1, 0.1, 0], "xyz")
+    push = em.Pressure(5, em.Box([0, 0, 0.1], [0.1, 0.1, 0.1]))
+    u = em.Scene(**arrays, loads=push, materials=em.Material()).simulate(E=1e4, nu=0.3).displacements
+    arrays["supports"] = em.Box([0, 0, 0], [0.1, 0.1, 0])
+    case = em.LoadCase(loads=[push])
+    expected = em.Scene(**arrays, cases=case).simulate(E=1e4, nu=0.3).displacements
+    np.testing.assert_array_equal(u, expected)
+
+
 def test_points_need_not_be_nodes(arrays):
     u = em.Scene(**arrays).simulate(E=1e4, nu=0.3).displacements
     tets = arrays["cells"]
@@ -356,6 +374,15 @@ def test_elements_that_were_cut_did_not_compute_displacements():
         ({"origin": "guessed"}, "must be \"measured\" or \"computed\""),
         ({"nodes": np.zeros(3)}, "nodes has the shape"),
         ({"materials": [em.Material("cheese")]}, "cheese"),
+        ({"supports": [1] * 9 + [0] * 18}, "supports is 0 or 1 for each of the 27 nodes"),
+        ({"supports": em.Box([0, 0, 0], [1, 1, 0], "uz")}, "give 3 flags or letters"),
+        ({"supports": em.Box([0, 0, 0], [1, 1, 0], [1, 1])}, "give 3 flags or letters"),
+        ({"supports": em.Box("low", [1, 1, 0])}, "is no array of numbers"),
+        ({"displacements": np.zeros((27, 3)).tolist()[:-1] + [[0]]}, "displacements is no array of"),
+        ({"loads": [em.Pressure(1, [[0.0, 1, 2]])]}, "type float64; give integers"),
+        ({"loads": "push"}, "a load is of the type str"),
+        ({"materials": ["isotropic"]}, "give a list of Material"),
+        ({"forces": None, "cases": [np.zeros((27, 3))]}, "give a list of LoadCase"),
         ({"noise_sd": -1.0, "displacements": np.ones((27, 3))}, "noise"),
         ({"cases": []}, "cases are given"),
     ],
