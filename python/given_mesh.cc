@@ -46,7 +46,8 @@ void GivenMesh::CompleteFacets(Eigen::MatrixXi& facets) const {
   for (const int node : facets.reshaped()) {
     RequireUsed(node, "a facet of a load");
   }
-  if (!file_.is_cut || facets.rows() <= file_.Topology().NumVerticesOfFace()) {
+  constexpr int kQuadrilateral = 4;
+  if (file_.kind != ElementKind::kTet4 || facets.rows() != kQuadrilateral) {
     return;
   }
   std::vector<std::vector<int>> parts;

@@ -49,7 +49,7 @@ class GivenMesh {
   }
 
   /// Completes a load case over all nodes, whose arrays have one column for
-  /// each point.  Facets of four nodes are cut as the cells are.  Throws
+  /// each point.  Facets of four nodes are cut as linear cells are.  Throws
   /// std::invalid_argument for a load or a resultant on a node that no element
   /// uses.
   void Complete(LoadCase& load_case) const;

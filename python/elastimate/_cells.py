@@ -25,6 +25,10 @@ _KINDS_OF_COUNT = {
         5: "pyramid5", 13: "pyramid13"},
 }  # fmt: skip
 
+_NODES_OF_TYPE = {
+    _TYPES[kind]: count for kinds in _KINDS_OF_COUNT.values() for count, kind in kinds.items()
+}
+
 
 class Cells(NamedTuple):
     """Points, shape (n, 3), and cells as VTK has them: their types, and the points of all of them."""
@@ -94,6 +98,9 @@ def _joined(points: NDArray[np.float64], blocks: list[tuple[str, Any]]) -> Cells
         if kind not in _TYPES:
             raise ValueError(f'there is no element kind "{kind}"; the kinds are {", ".join(_TYPES)}')
         rows = connectivity_of("the cells", of_kind)
+        due = _NODES_OF_TYPE.get(_TYPES[kind], rows.shape[1])
+        if rows.shape[1] != due:
+            raise ValueError(f"cells of the kind {kind} have {rows.shape[1]} nodes; give {due}")
         types = np.append(types, np.full(len(rows), _TYPES[kind]))
         connectivity = np.append(connectivity, rows)
         counts = np.append(counts, np.full(len(rows), rows.shape[1]))

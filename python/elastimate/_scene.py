@@ -225,6 +225,8 @@ class Scene:
 
     def displacements_of(self, load_case: int) -> Floats:
         """As ``displacements``, of the load case with this number from zero."""
+        if not 0 <= load_case < self.num_cases:
+            raise IndexError(f"there is no load case {load_case}")
         return self._core.displacement(load_case)
 
     @property
@@ -271,7 +273,7 @@ class Scene:
         call = _call(
             "estimate", estimator, noise_sd=noise_sd, origin=origin, order=order, map=map, **options
         )
-        return Estimate(_core.run(scene, estimator, _core.Options(**options)), call)
+        return Estimate(_core.run(scene, estimator, _options(options)), call)
 
     def prepare(
         self,
@@ -291,7 +293,7 @@ class Scene:
         call = _call(
             "prepare", estimator, noise_sd=noise_sd, origin=origin, order=order, **options
         )
-        return PreparedEstimator(_core.Prepared(scene, estimator, _core.Options(**options)), call)
+        return PreparedEstimator(_core.Prepared(scene, estimator, _options(options)), call)
 
     def simulate(
         self,
@@ -343,6 +345,19 @@ def _call(method: str, estimator: str, order: int, **given: Any) -> str:
         given["order"] = order
     options = [f"{name}={value!r}" for name, value in given.items() if value is not None]
     return f"scene.{method}({', '.join([repr(estimator), *options])})"
+
+
+def _options(options: dict[str, Any]) -> _core.Options:
+    if isinstance(options.get("refine"), int):
+        options = {**options, "refine": str(options["refine"])}
+    for name, value in options.items():
+        try:
+            _core.Options(**{name: value})
+        except TypeError:
+            raise ValueError(
+                f"{name}={value!r} is no option, or of another type; docs/python.md lists the options"
+            ) from None
+    return _core.Options(**options)
 
 
 class PreparedEstimator:
@@ -402,10 +417,10 @@ def _of_elements(core: _core.Scene, values: NDArray[Any]) -> NDArray[Any] | None
 def _regions(core: _core.Scene, regions: ArrayLike) -> NDArray[np.int32]:
     ids = np.asarray(regions)
     of_elements = _of_elements(core, ids) if ids.ndim == 1 and ids.dtype.kind in "iub" else None
-    if of_elements is None:
+    if of_elements is None or np.any(np.abs(of_elements) > np.iinfo(np.int32).max):
         raise ValueError(
             f"regions has the shape {ids.shape} and the type {ids.dtype}; give one integer "
-            f"for each of the {core.num_cells} elements"
+            f"below 2^31 for each of the {core.num_cells} elements"
         )
     return of_elements.astype(np.int32)
 
@@ -424,11 +439,19 @@ def _several(name: str, values: Any, kind: type[_T]) -> list[_T]:
 def _numbers(name: str, values: ArrayLike) -> Floats:
     """Returns an array of numbers, NaN where it is masked."""
     try:
+        if np.iscomplexobj(values):
+            raise TypeError
         if isinstance(values, np.ma.MaskedArray):
             return np.where(values.mask, np.nan, values.data.astype(float))
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(f"{name} is no array of numbers; give numbers, all rows of one length") from None
+
+
+def _number(name: str, value: Any) -> float | None:
+    if value is not None and (isinstance(value, str) or np.size(value) != 1):
+        raise ValueError(f"{name}={value!r}; give one number")
+    return None if value is None else float(_numbers(name, value).reshape(()))
 
 
 def _rows(name: str, values: ArrayLike, count: int, dimension: int, of: str) -> Floats:
@@ -560,7 +583,8 @@ def _core_load(core: _core.Scene, load: object) -> _core._Load:
     if isinstance(load, Traction):
         return _core.Traction(_facets(core, load.where), np.atleast_2d(_vector(load.traction)))
     if isinstance(load, Pressure):
-        return _core.Pressure(_facets(core, load.where), load.pressure, load.follows)
+        pressure = _number("pressure", load.pressure)
+        return _core.Pressure(_facets(core, load.where), 0 if pressure is None else pressure, load.follows)
     if isinstance(load, SurfaceForce):
         return _core.SurfaceForce(_facets(core, load.where), _vector(load.force))
     if isinstance(load, BodyForce):
@@ -574,6 +598,7 @@ def _core_load(core: _core.Scene, load: object) -> _core._Load:
 
 def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
     n, d = core.num_points, core.dimension
+    noise_sd = _number(f"{where}noise_sd", case.noise_sd)
     loads = [_core_load(core, load) for load in _several(f"{where}loads", case.loads, object)]
     resultants = [
         _core_resultant(core, one, where)
@@ -586,9 +611,8 @@ def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
         if case.displacements is None:
             raise ValueError(f"{where}points are given without displacements; give both")
         of_points = _rows(f"{where}displacements", case.displacements, len(points), d, "point")
-        core.add_case(
-            loads, None, None, points, of_points, case.tolerance, case.noise_sd, resultants
-        )
+        tolerance = _number(f"{where}tolerance", case.tolerance)
+        core.add_case(loads, None, None, points, of_points, tolerance, noise_sd, resultants)
         return
     displacement = observed = None
     if case.displacements is not None:
@@ -597,4 +621,4 @@ def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
         if missing.any():
             observed = ~missing
             displacement = np.where(missing, 0, displacement)
-    core.add_case(loads, displacement, observed, None, None, None, case.noise_sd, resultants)
+    core.add_case(loads, displacement, observed, None, None, None, noise_sd, resultants)

@@ -138,8 +138,9 @@ TEST_F(GmshMeshTest, SaysThatSetsOfNastranAreNotRead) {
   };
   EXPECT_TRUE(notices(mesh).empty());
   ASSERT_EQ(notices(sets + mesh).size(), 1);
-  EXPECT_THAT(notices(sets + mesh)[0],
-              testing::StartsWith("2 sets of this Nastran file are not read"));
+  EXPECT_THAT(
+      notices(sets + mesh)[0],
+      ::testing::StartsWith("2 sets of this Nastran file are not read"));
 }
 
 TEST_F(GmshMeshTest, ReadsASceneFromNodeData) {
