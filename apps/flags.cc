@@ -245,7 +245,7 @@ Command TheSceneCommand() {
           {{"Scene",
             {{"support"},
              {"force", "total force on a surface of that name: NAME,X,Y,Z"},
-             {"points", "table of measured points"},
+             {"points", "table of measured points, or of numbered nodes"},
              {"model", "3d, plane_stress or plane_strain"},
              {"thickness", "thickness of a planar specimen [length]"}}},
            {"Output",

@@ -6,6 +6,7 @@
 
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/text/numbers.h"
+#include "elastimate/io/points/node_table.h"
 #include "elastimate/io/scene/json_scene.h"
 #include "elastimate/io/text/input_error.h"
 
@@ -48,6 +49,22 @@ std::string RelativeTo(const std::filesystem::path& scene,
   const std::filesystem::path folder =
       std::filesystem::absolute(scene).parent_path();
   return std::filesystem::absolute(file).lexically_proximate(folder).string();
+}
+
+/// Throws for all that is wrong in a scene.json.
+void CheckScene(const std::filesystem::path& path, const Json& document) {
+  const nlohmann::json contents = document;
+  ReadJsonScene(JsonValue(path, contents), Measurement::kOptional, {});
+}
+
+/// Tells whether the file has displacements of numbered nodes.
+bool IsNodeTable(const std::filesystem::path& path, int dimension) {
+  try {
+    ReadNodeTable(path, dimension);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -104,8 +121,16 @@ std::string FirstSceneText(const std::filesystem::path& path,
          {"surface", Selection(mesh, scene.loaded)}});
   }
   document["cases"] = Json::array({load_case});
-  const nlohmann::json contents = document;
-  ReadJsonScene(JsonValue(path, contents), Measurement::kOptional, {});
+  try {
+    CheckScene(path, document);
+  } catch (const std::invalid_argument&) {
+    if (scene.points.empty() || !IsNodeTable(scene.points, mesh.Dimension())) {
+      throw;
+    }
+    document["cases"][0]["displacement"] = {
+        {"nodes", RelativeTo(path, scene.points)}};
+    CheckScene(path, document);
+  }
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

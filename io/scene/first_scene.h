@@ -28,8 +28,9 @@ struct FirstScene {
   std::vector<std::string> supports;  ///< Names of what is held.
   std::string loaded;                 ///< The name of a surface; may be empty.
   Eigen::VectorXd force;              ///< The total force on it [force].
-  std::filesystem::path points;       ///< A table of points; may be empty.
-  SectionChoice section;              ///< Of a planar mesh.
+  /// A table of points or of numbered nodes; may be empty.
+  std::filesystem::path points;
+  SectionChoice section;  ///< Of a planar mesh.
 };
 
 /// Returns the text of a scene.json at `path`, with paths relative to its

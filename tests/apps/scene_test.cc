@@ -103,6 +103,9 @@ TEST_F(SceneCommand, LeadsFromADeckOfCalculixToItsModuli) {
   for (const std::string name : {"cube.inp", "cube.dat"}) {
     std::filesystem::copy_file(data / name, folder_ / name);
   }
+  Succeed("scene cube.inp --support=FIX --points=cube.dat --out=first.json");
+  const Json first = Json::parse(testing::ReadText(folder_ / "first.json"));
+  EXPECT_EQ(first["cases"][0]["displacement"]["nodes"], "cube.dat");
   testing::WriteText(folder_ / "scene.json", R"({"mesh": "cube.inp",
     "origin": "computed", "supports": [{"nodes": {"set": "FIX"}}],
     "cases": [{"displacement": {"nodes": "cube.dat"},
