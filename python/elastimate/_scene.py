@@ -354,7 +354,7 @@ def _options(options: dict[str, Any]) -> _core.Options:
         try:
             _core.Options(**{name: value})
         except TypeError:
-            raise ValueError(
+            raise TypeError(
                 f"{name}={value!r} is no option, or of another type; docs/python.md lists the options"
             ) from None
     return _core.Options(**options)

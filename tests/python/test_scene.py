@@ -419,7 +419,7 @@ def test_wrong_parameters_are_refused(arrays):
 @pytest.mark.parametrize("option", [{"refine": 1.5}, {"young": 3}, {"nu": "0.3"}])
 def test_wrong_options_are_refused_in_one_sentence(arrays, option):
     (name,) = option
-    with pytest.raises(ValueError, match=f"^{name}=.* is no option, or of another type"):
+    with pytest.raises(TypeError, match=f"^{name}=.* is no option, or of another type"):
         em.Scene(**arrays).estimate("auto", **option)
 
 
