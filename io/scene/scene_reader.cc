@@ -447,6 +447,7 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                       "files; leave these out, or the key \"frames\"");
     }
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
+    const Origin origin = scene.origin;
     if (&path == &paths.front()) {
       NoteMesh(mesh_path, why_no_regions, scene, reading.notices);
       scene.load_cases.clear();
@@ -466,7 +467,7 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
           PrintablePath(path) + " has other supports than " +
           PrintablePath(paths.front()) + "; each load case keeps its own");
     }
-    if (scene.origin != reading.scene.origin && &path != &paths.front()) {
+    if (origin != reading.scene.origin && &path != &paths.front()) {
       reading.scene.origin = Origin::kMeasured;
       reading.notices.push_back(
           "some of the files have computed displacements, others measured "
