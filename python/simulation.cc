@@ -80,7 +80,7 @@ Scene SimulatedScene(const Scene& scene, const Eigen::VectorXd& parameters,
               generator, displacement);
     LoadCase& load_case = simulated.load_cases[k];
     load_case.displacement = displacement;
-    load_case.observed = {};
+    load_case.observed.resize(0, 0);  // "= {}" would set it to false.
     load_case.points = {};
     load_case.noise_sd =
         noise_sd > 0 ? std::optional<double>(noise_sd) : std::nullopt;

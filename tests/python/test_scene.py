@@ -88,8 +88,10 @@ def test_supports_are_given_in_several_ways(arrays):
 def test_what_was_not_measured_is_not_used(arrays):
     u = em.Scene(**arrays).simulate(E=1e4, nu=0.3).displacements.copy()
     u[5:8] = np.nan
-    estimate = em.Scene(**arrays, displacements=u, origin="computed").estimate("iterative-fe")
-    assert estimate["E"].value == pytest.approx(1e4, rel=1e-6)
+    measured = em.Scene(**arrays, displacements=u, origin="computed")
+    assert measured.estimate("iterative-fe")["E"].value == pytest.approx(1e4, rel=1e-6)
+    np.testing.assert_array_equal(measured.displacements, u)
+    assert np.isfinite(measured.simulate(E=1e4, nu=0.3).displacements).all()
 
 
 def test_masked_values_were_not_measured(arrays):
