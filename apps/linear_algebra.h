@@ -13,7 +13,8 @@ std::string DescribeBlas();
 /// where OpenBLAS does not know the processor, as it is newer, and has taken
 /// those of 2004, with which a factorisation takes half as long again. OpenBLAS
 /// chooses when it is loaded.  OPENBLAS_CORETYPE in the environment has the
-/// last word.
+/// last word.  The new start also has OpenMP's threads wait without work,
+/// unless OMP_WAIT_POLICY says otherwise.
 void UseBlasKernelsOfProcessor(char** argv);
 
 /// Sets the threads of OpenMP and those of the BLAS; of the latter, at most as

@@ -7,6 +7,7 @@
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/scene_builder.h"
 #include "tests/dense_reference.h"
 
 namespace elastimate::testing {
@@ -88,6 +89,20 @@ Scene HeldAtBottom(const Mesh& mesh, const Mesh& reference,
 
 std::vector<std::string> SmallSceneNames() {
   return {"cuboid", "bar", "organ"};
+}
+
+void HoldPlane(int axis, double place, double displacement, Scene& scene) {
+  const Eigen::Index d = scene.mesh.Dimension();
+  const double kFar = 1e6;
+  Eigen::VectorXd lower = Eigen::VectorXd::Constant(d, -kFar);
+  Eigen::VectorXd upper = Eigen::VectorXd::Constant(d, kFar);
+  lower(axis) = upper(axis) = place;
+  Eigen::Array<bool, Eigen::Dynamic, 1> components =
+      Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(d, false);
+  components(axis) = true;
+  Eigen::VectorXd held = Eigen::VectorXd::Zero(d);
+  held(axis) = displacement;
+  HoldInBox(lower, upper, components, held, scene);
 }
 
 Scene SmallScene(const std::string& shape) {

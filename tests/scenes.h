@@ -28,6 +28,9 @@ Mesh Distorted(Mesh mesh);
 Scene HeldAtBottom(const Mesh& mesh, const Mesh& reference,
                    const Eigen::Vector3d& force_per_node);
 
+/// Holds one component where the coordinate of that axis is `place`.
+void HoldPlane(int axis, double place, double displacement, Scene& scene);
+
 /// Returns a small scene by name: "cuboid", "bar" (slender), "organ"
 /// (distorted).
 Scene SmallScene(const std::string& shape);

@@ -54,9 +54,9 @@ struct FieldEvidence {
   }
 };
 
-// The same where delta is that of the modes alone, for many k: with the
-// coordinates U^T g, g^T delta = k (|g|^2 - sum (k lambda / (1 + k lambda))
-// (U^T g)^2).
+// Evaluates FieldEvidence::Of for many k, with the delta that the modes alone
+// give.  With the coordinates U^T g, g^T delta = k (|g|^2 - sum (k lambda /
+// (1 + k lambda)) (U^T g)^2).
 class EvidenceOfModes {
  public:
   explicit EvidenceOfModes(const FieldEvidence& evidence)

@@ -23,11 +23,13 @@
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "tests/element_kinds.h"
+#include "tests/scenes.h"
 
 namespace elastimate {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::HoldPlane;
 
 // A grid of cells over the unit square or cube, moved by a map.
 Mesh GridMesh(
@@ -76,21 +78,6 @@ Scene SceneOf(const Mesh& mesh, const std::string& law) {
   scene.materials[0].law = law;
   scene.load_cases.resize(1);
   return scene;
-}
-
-// Holds one component where the coordinate of that axis is `place`.
-void HoldPlane(int axis, double place, double displacement, Scene& scene) {
-  const Eigen::Index d = scene.mesh.Dimension();
-  const double kFar = 1e6;
-  Eigen::VectorXd lower = Eigen::VectorXd::Constant(d, -kFar);
-  Eigen::VectorXd upper = Eigen::VectorXd::Constant(d, kFar);
-  lower(axis) = upper(axis) = place;
-  Eigen::Array<bool, Eigen::Dynamic, 1> components =
-      Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(d, false);
-  components(axis) = true;
-  Eigen::VectorXd held = Eigen::VectorXd::Zero(d);
-  held(axis) = displacement;
-  HoldInBox(lower, upper, components, held, scene);
 }
 
 LargeStrainState SolveOf(const Scene& scene, const Eigen::VectorXd& parameters,
@@ -468,9 +455,9 @@ TEST(LargeStrainEquilibrium, SaysThatAColumnBuckles) {
   EXPECT_GE(state.element, mesh.NumElements() - 4);
 }
 
-// St. Venant and Kirchhoff's law bears a pressure of up to E / sqrt(27), at a
-// stretch of 1 / sqrt(3).
-TEST(LargeStrainEquilibrium, SaysAtWhichLoadTheMaterialGivesWay) {
+// Returns a cube that is pressed by 0.3 E.  St. Venant and Kirchhoff's law
+// bears up to E / sqrt(27), at a stretch of 1 / sqrt(3).
+Scene CubePressedTooFar() {
   const Mesh mesh = BoxGrid(Eigen::Vector3i(1, 1, 1), Eigen::Vector3d::Ones());
   Scene scene = SceneOf(mesh, "st_venant_kirchhoff");
   for (int axis = 0; axis < 3; ++axis) {
@@ -479,6 +466,11 @@ TEST(LargeStrainEquilibrium, SaysAtWhichLoadTheMaterialGivesWay) {
   scene.load_cases[0].loads = {TractionInBox(mesh, Eigen::Vector3d(0, 0, 1),
                                              Eigen::Vector3d(1, 1, 1),
                                              Eigen::Vector3d(0, 0, -0.3))};
+  return scene;
+}
+
+TEST(LargeStrainEquilibrium, SaysAtWhichLoadTheMaterialGivesWay) {
+  const Scene scene = CubePressedTooFar();
   const LargeStrainState state = SolveOf(scene, Eigen::Vector2d(1, 0.0));
   // Newton's method ends in elements that are inside out, but at the last
   // equilibrium none is nearly flat.
@@ -488,14 +480,7 @@ TEST(LargeStrainEquilibrium, SaysAtWhichLoadTheMaterialGivesWay) {
 }
 
 TEST(LargeStrainEquilibrium, ShowsHowFarItsSearchIs) {
-  const Mesh mesh = BoxGrid(Eigen::Vector3i(1, 1, 1), Eigen::Vector3d::Ones());
-  Scene scene = SceneOf(mesh, "st_venant_kirchhoff");
-  for (int axis = 0; axis < 3; ++axis) {
-    HoldPlane(axis, 0, 0, scene);
-  }
-  scene.load_cases[0].loads = {TractionInBox(mesh, Eigen::Vector3d(0, 0, 1),
-                                             Eigen::Vector3d(1, 1, 1),
-                                             Eigen::Vector3d(0, 0, -0.3))};
+  const Scene scene = CubePressedTooFar();
   LargeStrainEquilibrium model(scene);
   std::vector<std::string> shown;
   const LargeStrainSolution solution = SolveLoadCases(

@@ -12,6 +12,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "tests/element_kinds.h"
+#include "tests/scenes.h"
 
 namespace elastimate {
 namespace {
@@ -192,13 +193,7 @@ TEST(LargeStrainModel, FollowsModuliThatChangeFar) {
   Scene scene = UnsupportedScene(mesh);
   scene.load_cases.resize(1);
   for (int axis = 0; axis < 3; ++axis) {
-    Eigen::Vector3d upper = Eigen::Vector3d::Ones();
-    upper(axis) = 0;
-    Eigen::Array<bool, 3, 1> components =
-        Eigen::Array<bool, 3, 1>::Constant(false);
-    components(axis) = true;
-    HoldInBox(Eigen::Vector3d::Zero(), upper, components,
-              Eigen::Vector3d::Zero(), scene);
+    testing::HoldPlane(axis, 0, 0, scene);
   }
   scene.materials.resize(1);
   scene.materials[0].law = "neo_hookean";

@@ -16,6 +16,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "elastimate/estimators/registry.h"
+#include "tests/scenes.h"
 
 namespace elastimate {
 namespace {
@@ -183,13 +184,7 @@ TEST(PublishedFits, ExplainThePressedCubeOfGibbon) {
   Scene scene =
       BlockScene(mesh, {"yeoh", {}, {{"bulk_modulus", 100 * c1}}, {}});
   for (int axis = 0; axis < 3; ++axis) {
-    Eigen::Vector3d upper = Eigen::Vector3d::Constant(height);
-    upper(axis) = 0;
-    Eigen::Array<bool, 3, 1> components =
-        Eigen::Array<bool, 3, 1>::Constant(false);
-    components(axis) = true;
-    HoldInBox(Eigen::Vector3d::Zero(), upper, components,
-              Eigen::Vector3d::Zero(), scene);
+    testing::HoldPlane(axis, 0, 0, scene);
   }
   const Eigen::Index count = Eigen::Index(kPressedCube.size());
   scene.load_cases.clear();
