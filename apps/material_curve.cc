@@ -61,32 +61,12 @@ NamedMaterial ReadCurveFlag() {
     FailCurve("; the first part must be a law of three dimensions, one of " +
               LawNames(SectionModel::kSolid));
   }
-  std::map<std::string, double> values = ReadValues(text);
-  NamedMaterial material = {law, Eigen::VectorXd(law->Parameters().size())};
-  std::string missing;
-  for (std::size_t i = 0; i < law->Parameters().size(); ++i) {
-    const LawParameter& parameter = law->Parameters()[i];
-    const auto value = values.find(std::string(parameter.name));
-    if (value == values.end()) {
-      missing += (missing.empty() ? "" : ", ") + std::string(parameter.name);
-      continue;
-    }
-    const std::string why = WhyOutOfRange(parameter, value->second);
-    if (!why.empty()) {
-      FailCurve("; " + std::string(parameter.name) + " " + why);
-    }
-    material.parameters(Eigen::Index(i)) = value->second;
-    values.erase(value);
+  const std::map<std::string, double> values = ReadValues(text);
+  try {
+    return {law, ParametersByName(*law, values)};
+  } catch (const std::invalid_argument& error) {
+    FailCurve("; " + Printable(error.what()));
   }
-  if (!values.empty()) {
-    FailCurve(" gives " + Printable(values.begin()->first) +
-              ", which is no parameter of " + name +
-              (missing.empty() ? "; leave it out" : "; give " + missing));
-  }
-  if (!missing.empty()) {
-    FailCurve(" needs " + missing + " as well");
-  }
-  return material;
 }
 
 struct CurveTable {

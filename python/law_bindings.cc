@@ -3,6 +3,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,8 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/large_strain/homogeneous_deformation.h"
 #include "elastimate/core/materials/law_check.h"
 #include "elastimate/core/materials/laws.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/scene/section.h"
 #include "python/bindings.h"
 #include "python/python_law.h"
@@ -62,6 +67,37 @@ DescribedLaws() {
   return described;
 }
 
+// Returns the stress of each mode at each stretch, NaN where there is none.
+std::map<std::string, std::vector<double>> CurvesOf(
+    const std::string& name, const std::map<std::string, double>& parameters,
+    const std::vector<double>& stretches) {
+  const Law* const law = FindLaw(name, SectionModel::kSolid);
+  if (law == nullptr) {
+    throw std::invalid_argument("law is \"" + name +
+                                "\"; it must be one of three dimensions: " +
+                                LawNames(SectionModel::kSolid));
+  }
+  for (const double stretch : stretches) {
+    if (!(stretch > 0 && std::isfinite(stretch))) {
+      throw std::invalid_argument("a stretch is " + NumberText(stretch) +
+                                  "; it must be positive and finite");
+    }
+  }
+  const Eigen::VectorXd moduli =
+      law->Moduli(ParametersByName(*law, parameters), SectionModel::kSolid);
+  std::map<std::string, std::vector<double>> curves;
+  for (const DeformationMode mode : kAllDeformationModes) {
+    std::vector<double>& stresses =
+        curves[std::string(DeformationModeName(mode))];
+    for (const auto& state :
+         DeformHomogeneously(*law, moduli, mode, stretches)) {
+      stresses.push_back(state ? state->stress
+                               : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return curves;
+}
+
 }  // namespace
 
 void BindLaws(py::module_& module) {
@@ -73,6 +109,8 @@ void BindLaws(py::module_& module) {
            py::arg("description"), py::arg("parameters"), py::arg("num_moduli"),
            py::arg("sections"));
   module.def("laws", &DescribedLaws, Released());
+  module.def("law_curves", &CurvesOf, py::arg("law"), py::arg("parameters"),
+             py::arg("stretches"), Released());
   module.def(
       "check_law",
       [](const std::shared_ptr<PythonLaw>& law) { return CheckLaw(*law); },

@@ -117,13 +117,10 @@ void SetCorotatedTangents(double mu, double lambda,
                           const PointMatrices& gradients,
                           GradientEntries entries, int count,
                           PointTangents& tangents, PointMatrices* stresses) {
-  if (entries == GradientEntries::kOfPlane) {
-    SetTangentsOfRotation<PlacesOfPlane>(mu, lambda, gradients, count, tangents,
-                                         stresses);
-  } else {
-    SetTangentsOfRotation<PlacesOfSolid>(mu, lambda, gradients, count, tangents,
-                                         stresses);
-  }
+  WithPlaces(entries, [&](auto places) HWY_ATTR {
+    SetTangentsOfRotation<decltype(places)>(mu, lambda, gradients, count,
+                                            tangents, stresses);
+  });
 }
 
 }  // namespace

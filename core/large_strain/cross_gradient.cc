@@ -7,8 +7,6 @@
 namespace elastimate {
 namespace {
 
-constexpr int kCross = 8;  // The row of H_33.
-
 // Returns H_33 of the law of small strains, in proportion to the logarithms of
 // the stretches.
 double FirstGuess(const PointMatrices& gradients, int point, double ratio) {
@@ -23,7 +21,7 @@ double FirstGuess(const PointMatrices& gradients, int point, double ratio) {
 double RatioAtRest(const LargeStrainLaw& law, const Eigen::VectorXd& moduli) {
   const Eigen::MatrixXd tangent =
       law.Tangent(moduli, Eigen::Matrix3d::Zero(), SectionModel::kSolid);
-  return tangent(kCross, 0) / tangent(kCross, kCross);
+  return tangent(kCrossPlace, 0) / tangent(kCrossPlace, kCrossPlace);
 }
 
 }  // namespace
@@ -31,22 +29,25 @@ double RatioAtRest(const LargeStrainLaw& law, const Eigen::VectorXd& moduli) {
 void SetCrossGradients(const LargeStrainLaw& law, const Eigen::VectorXd& moduli,
                        int count, PointMatrices& gradients) {
   constexpr int kMostSteps = 50;
-  constexpr double kTolerance = 1e-14;
+  // After a step of this share of the stretch, Newton's method has squared its
+  // error, to that of rounding.
+  constexpr double kTolerance = 1e-8;
   const double ratio = RatioAtRest(law, moduli);
   for (const int row : {2, 5, 6, 7}) {
     std::fill_n(gradients.row[row], PointMatrices::kPoints, 0.0);
   }
-  double* const cross = gradients.row[kCross];
+  double* const cross = gradients.row[kCrossPlace];
   std::fill_n(cross, PointMatrices::kPoints, 0.0);
   for (int p = 0; p < count; ++p) {
     cross[p] = FirstGuess(gradients, p, ratio);
   }
   PointMatrices stresses;
   PointTangents tangents;
-  const double* const stress = stresses.row[kCross];
-  const double* const slope = tangents.row[TangentRow(kCross, kCross)];
+  const double* const stress = stresses.row[kCrossPlace];
+  const double* const slope =
+      tangents.row[TangentRow(kCrossPlace, kCrossPlace)];
   for (int step = 0; step < kMostSteps; ++step) {
-    law.TangentsAtPoints(moduli, gradients, GradientEntries::kOfPlane, count,
+    law.TangentsAtPoints(moduli, gradients, GradientEntries::kAcross, count,
                          tangents, &stresses);
     bool is_found = true;
     for (int p = 0; p < count; ++p) {

@@ -96,13 +96,10 @@ HWY_INLINE void SetStressesAt(const PointMatrices& gradients, int count,
 void SetStresses(const PointMatrices& gradients, GradientEntries entries,
                  int count, const PointDerivatives* of_moduli, int num_moduli,
                  PointMatrices* columns) {
-  if (entries == GradientEntries::kOfPlane) {
-    SetStressesAt<PlacesOfPlane>(gradients, count, of_moduli, num_moduli,
-                                 columns);
-  } else {
-    SetStressesAt<PlacesOfSolid>(gradients, count, of_moduli, num_moduli,
-                                 columns);
-  }
+  WithPlaces(entries, [&](auto places) HWY_ATTR {
+    SetStressesAt<decltype(places)>(gradients, count, of_moduli, num_moduli,
+                                    columns);
+  });
 }
 
 // Adds w times the derivative of cof F: a permutation of the entries of F.
@@ -199,11 +196,9 @@ HWY_INLINE void SetTangentsAt(const PointMatrices& gradients, int count,
 void SetTangents(const PointMatrices& gradients, GradientEntries entries,
                  int count, const PointDerivatives& w, bool has_second,
                  PointTangents& tangents) {
-  if (entries == GradientEntries::kOfPlane) {
-    SetTangentsAt<PlacesOfPlane>(gradients, count, w, has_second, tangents);
-  } else {
-    SetTangentsAt<PlacesOfSolid>(gradients, count, w, has_second, tangents);
-  }
+  WithPlaces(entries, [&](auto places) HWY_ATTR {
+    SetTangentsAt<decltype(places)>(gradients, count, w, has_second, tangents);
+  });
 }
 
 }  // namespace

@@ -28,14 +28,17 @@ constexpr int TangentRow(int a, int b) {
   return a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;
 }
 
-/// Which entries of gradients at some points may not be zero.
+/// Which entries of stresses and tangents at some points are asked for.
 enum class GradientEntries {
   kAll,
   kOfPlane,  ///< Those of a mesh in the plane: kPlacesOfPlane.
+  kAcross,   ///< That across a plate alone: kCrossPlace.
 };
 
 /// The places of H_11, H_21, H_12, H_22 and H_33 in a matrix of nine.
 inline constexpr std::array<int, 5> kPlacesOfPlane = {0, 1, 3, 4, 8};
+/// The place of H_33.
+inline constexpr int kCrossPlace = 8;
 
 /// A law for deformations of any size.  It is objective: for a rotation Q and
 /// F = I + H,
@@ -64,8 +67,9 @@ class LargeStrainLaw : public Law {
                           SectionModel model) const override;
 
   /// Sets columns[k] to P_k at the first `count` points, at most
-  /// PointMatrices::kPoints; for gradients of the plane at least the entries of
-  /// kPlacesOfPlane.  The gradients of other points are finite.
+  /// PointMatrices::kPoints; at least the entries that are asked for.  Unless
+  /// these are all, H_13, H_23, H_31 and H_32 are zero.  The gradients of other
+  /// points are finite.
   virtual void StressesAtPoints(const PointMatrices& gradients,
                                 GradientEntries entries, int count,
                                 PointMatrices* columns) const = 0;

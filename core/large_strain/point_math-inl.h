@@ -203,6 +203,22 @@ struct PlacesOfSolid {
 struct PlacesOfPlane {
   static constexpr std::array<int, 5> kPlaces = kPlacesOfPlane;
 };
+struct PlaceAcross {
+  static constexpr std::array<int, 1> kPlaces = {kCrossPlace};
+};
+
+// Calls function(places) with the places of these entries.
+template <class Function>
+HWY_INLINE void WithPlaces(GradientEntries entries, const Function& function) {
+  switch (entries) {
+    case GradientEntries::kAll:
+      return function(PlacesOfSolid());
+    case GradientEntries::kOfPlane:
+      return function(PlacesOfPlane());
+    case GradientEntries::kAcross:
+      return function(PlaceAcross());
+  }
+}
 
 // A tangent at some points, of which the rows and columns at some places are
 // computed.

@@ -133,6 +133,37 @@ std::string WhyOutOfRange(const LawParameter& parameter, double value) {
   return why.str();
 }
 
+Eigen::VectorXd ParametersByName(const Law& law,
+                                 std::map<std::string, double> values) {
+  const std::vector<LawParameter>& wanted = law.Parameters();
+  Eigen::VectorXd parameters(wanted.size());
+  std::string missing;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const std::string name(wanted[i].name);
+    const auto value = values.find(name);
+    if (value == values.end()) {
+      missing += (missing.empty() ? "" : ", ") + name;
+      continue;
+    }
+    const std::string why = WhyOutOfRange(wanted[i], value->second);
+    if (!why.empty()) {
+      throw std::invalid_argument(name + " " + why);
+    }
+    parameters(Eigen::Index(i)) = value->second;
+    values.erase(value);
+  }
+  const std::string law_name(law.Name());
+  if (!values.empty()) {
+    throw std::invalid_argument(
+        law_name + " has no parameter " + values.begin()->first +
+        (missing.empty() ? "; leave it out" : "; give " + missing));
+  }
+  if (!missing.empty()) {
+    throw std::invalid_argument(law_name + " needs " + missing + " as well");
+  }
+  return parameters;
+}
+
 const Law* FindLaw(std::string_view name, std::optional<SectionModel> model) {
   for (const Law* const law : Laws()) {
     if (law->Name() == name && IsTaken(*law, model)) {

@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_CORE_MATERIALS_LAWS_H_
 #define ELASTIMATE_CORE_MATERIALS_LAWS_H_
 
+#include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +39,12 @@ void RegisterLaw(std::shared_ptr<const Law> law);
 /// finite"; empty when nothing is.
 [[nodiscard]] std::string WhyOutOfRange(const LawParameter& parameter,
                                         double value);
+
+/// The parameters of a law in its order, from their values by name.  Throws
+/// std::invalid_argument when one is missing, is none of the law's, or is out
+/// of range.
+[[nodiscard]] Eigen::VectorXd ParametersByName(
+    const Law& law, std::map<std::string, double> values);
 
 /// The law of this name that takes the section; null when there is none.
 /// Without a section, the first law of this name, which has all parameters that

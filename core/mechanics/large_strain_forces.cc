@@ -19,9 +19,6 @@
 namespace elastimate {
 namespace {
 
-// The place of the entry across a plate, (3, 3), in a matrix of nine.
-constexpr int kCrossEntry = 8;
-
 // The material of some elements, and how they are evaluated.
 struct MaterialPass {
   const Mesh& mesh;
@@ -135,13 +132,13 @@ class ElementBatch {
     PointTangents tangents;
     SetTangents(tangents, nullptr);
     const double* const cross_slope =
-        tangents.row[TangentRow(kCrossEntry, kCrossEntry)];
+        tangents.row[TangentRow(kCrossPlace, kCrossPlace)];
     for (PointMatrices& stress : columns) {
       for (int p = 0; p < NumPoints(); ++p) {
-        const double change = -stress.row[kCrossEntry][p] / cross_slope[p];
+        const double change = -stress.row[kCrossPlace][p] / cross_slope[p];
         for (const int entry : kPlacesOfPlane) {
           stress.row[entry][p] +=
-              tangents.row[TangentRow(entry, kCrossEntry)][p] * change;
+              tangents.row[TangentRow(entry, kCrossPlace)][p] * change;
         }
       }
     }
@@ -369,8 +366,8 @@ auto TangentIn(const PointTangents& tangents, int point, SectionModel model) {
       const int a = row % kDimension + 3 * (row / kDimension);
       tangent(row, column) = entry(a, b);
       if (model == SectionModel::kPlaneStress) {
-        tangent(row, column) -= entry(a, kCrossEntry) * entry(kCrossEntry, b) /
-                                entry(kCrossEntry, kCrossEntry);
+        tangent(row, column) -= entry(a, kCrossPlace) * entry(kCrossPlace, b) /
+                                entry(kCrossPlace, kCrossPlace);
       }
     }
   }

@@ -12,7 +12,16 @@ Wrong input raises ValueError with one sentence that says what is wrong and what
 
 from ._core import Finding, Material, Options, Parameter, __version__, estimators
 from ._estimate import Estimate
-from ._law import Law, LawDescription, LawParameter, check_law, laws, register_law
+from ._law import (
+    Law,
+    LawCurve,
+    LawDescription,
+    LawParameter,
+    check_law,
+    law_curve,
+    laws,
+    register_law,
+)
 from ._scene import (
     BodyForce,
     Box,
@@ -32,6 +41,7 @@ __all__ = [
     "Estimate",
     "Finding",
     "Law",
+    "LawCurve",
     "LawDescription",
     "LawParameter",
     "LoadCase",
@@ -47,6 +57,7 @@ __all__ = [
     "__version__",
     "check_law",
     "estimators",
+    "law_curve",
     "laws",
     "read",
     "register_law",

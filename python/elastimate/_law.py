@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import TYPE_CHECKING, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Floats = NDArray[np.float64]
 
@@ -142,4 +145,51 @@ def laws() -> list[LawDescription]:
     return [LawDescription(name, text, tuple(names)) for name, text, names in _core.laws()]
 
 
-__all__ = ["Law", "LawDescription", "LawParameter", "check_law", "laws", "register_law"]
+@dataclass(frozen=True)
+class LawCurve:
+    """What a material does in five tests of a block, as ``law_curve`` returns it.
+
+    law        its name
+    stretches  [1], shape (n,)
+    stress     of each test the force per undeformed area [pressure], shape (n,); NaN where no
+               stable state was found.  The tests are "uniaxial", "equibiaxial" and "pure_shear",
+               whose free sides bear no traction; "simple_shear", F = I + (stretch - 1) e1 e2^T;
+               and "volumetric".
+    """
+
+    law: str
+    stretches: Floats
+    stress: dict[str, Floats]
+
+    def plot(self) -> Figure:
+        """Returns a figure of matplotlib, a line for each test."""
+        from ._plot import plot_curve
+
+        return plot_curve(self)
+
+
+def law_curve(
+    law: str, *, stretches: Sequence[float] | Floats | None = None, **parameters: float
+) -> LawCurve:
+    """Returns the stress of a material of this law, with all its parameters, in five tests.
+
+        em.law_curve("neo_hookean", youngs_modulus=1e4, poisson_ratio=0.45).plot()
+
+    Stretches are from 0.5 to 3 unless they are given.  Raises ValueError for a wrong law,
+    parameter or stretch.  The cost is some hundred evaluations of the law for each test.
+    """
+    where = np.linspace(0.5, 3, 101) if stretches is None else np.asarray(stretches, dtype=float)
+    found = _core.law_curves(law, parameters, where.ravel().tolist())
+    return LawCurve(law, where.ravel(), {test: np.array(stress) for test, stress in found.items()})
+
+
+__all__ = [
+    "Law",
+    "LawCurve",
+    "LawDescription",
+    "LawParameter",
+    "check_law",
+    "law_curve",
+    "laws",
+    "register_law",
+]

@@ -1,4 +1,4 @@
-"""A figure of an estimate."""
+"""Figures of estimates and of laws."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ._estimate import Estimate
+    from ._law import LawCurve
 
 
 def plot(estimate: Estimate) -> Figure:
@@ -32,6 +33,27 @@ def plot(estimate: Estimate) -> Figure:
     if not shown:
         axes[0].axis("off")
         axes[0].text(0, 0.5, estimate.message or "no standard errors", wrap=True)
+    return figure
+
+
+def plot_curve(curve: LawCurve) -> Figure:
+    """Draws the stress of each test against the stretch.
+
+    The volumetric test of rubber is so much stiffer than the others that it has an axis of its own.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 6), layout="constrained")
+    of_shape, of_volume = figure.subplots(2, 1, sharex=True)
+    figure.suptitle(curve.law)
+    for style, test in zip(("-", "--", "-.", ":"), ("uniaxial", "equibiaxial", "pure_shear", "simple_shear")):
+        of_shape.plot(curve.stretches, curve.stress[test], style, label=test.replace("_", " "))
+    of_volume.plot(curve.stretches, curve.stress["volumetric"], label="volumetric")
+    of_volume.set_xlabel("stretch")
+    for ax in (of_shape, of_volume):
+        ax.set_ylabel("force per undeformed area")
+        ax.axhline(0, color="0.7", linewidth=0.8, zorder=0)
+        ax.legend()
     return figure
 
 

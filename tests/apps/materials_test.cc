@@ -99,7 +99,7 @@ TEST_F(MaterialsCommand, RefusesACurveOfNoMaterial) {
   Refuse(
       "materials "
       "--curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.3,c10=1",
-      "which is no parameter of neo_hookean");
+      "neo_hookean has no parameter c10; leave it out");
   Refuse(
       "materials --curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.3 "
       "--out=curve.txt",

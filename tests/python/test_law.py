@@ -75,3 +75,29 @@ def test_wrong_laws_are_refused():
         em.register_law(Skewed())
     with pytest.raises(ValueError, match="has no name"):
         em.register_law(em.Law())
+
+
+# A closed form: a column of Hooke's law is as stiff as E, whatever the law is called that turns with it.
+def test_the_curve_of_a_law():
+    curve = em.law_curve("corotated", stretches=[0.5, 1, 2], youngs_modulus=10, poisson_ratio=0.25)
+    assert np.allclose(curve.stress["uniaxial"], [-5, 0, 10])
+    assert sorted(curve.stress) == ["equibiaxial", "pure_shear", "simple_shear", "uniaxial", "volumetric"]
+    figure = em.law_curve("st_venant_kirchhoff", youngs_modulus=1, poisson_ratio=0.45).plot()
+    assert [len(ax.lines) for ax in figure.axes] == [5, 2]
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: em.law_curve("rubber"), "one of three dimensions"),
+        (lambda: em.law_curve("corotated", youngs_modulus=1), "corotated needs poisson_ratio as well"),
+        (lambda: em.law_curve("corotated", c10=1), "has no parameter c10"),
+        (
+            lambda: em.law_curve("corotated", stretches=[0], youngs_modulus=1, poisson_ratio=0.25),
+            "a stretch is 0; it must be positive",
+        ),
+    ],
+)
+def test_the_curve_of_no_material_is_refused(call, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        call()

@@ -318,7 +318,7 @@ TEST_P(LargeStrainLaws, GiveTheSameAtManyPointsAsAtOne) {
   }
 }
 
-TEST_P(LargeStrainLaws, HaveInThePlaneWhatTheSolidHas) {
+TEST_P(LargeStrainLaws, HaveInThePlaneAndAcrossItWhatTheSolidHas) {
   PointMatrices gradients = {};
   constexpr int kCount = 61;
   for (int p = 0; p < kCount; ++p) {
@@ -327,35 +327,40 @@ TEST_P(LargeStrainLaws, HaveInThePlaneWhatTheSolidHas) {
       gradients.row[place][p] = 0.3 * h(place);
     }
   }
-  std::vector<PointMatrices> stresses_of_plane(law_.NumModuli());
-  std::vector<PointMatrices> stresses_of_solid(law_.NumModuli());
-  law_.StressesAtPoints(gradients, GradientEntries::kOfPlane, kCount,
-                        stresses_of_plane.data());
-  law_.StressesAtPoints(gradients, GradientEntries::kAll, kCount,
-                        stresses_of_solid.data());
-  PointTangents of_plane;
-  PointTangents of_solid;
-  PointMatrices sum_of_plane;
-  PointMatrices sum_of_solid;
-  law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kOfPlane, kCount,
-                        of_plane, &sum_of_plane);
-  law_.TangentsAtPoints(Moduli(), gradients, GradientEntries::kAll, kCount,
-                        of_solid, &sum_of_solid);
-  for (const int a : kPlacesOfPlane) {
-    for (int p = 0; p < kCount; ++p) {
-      EXPECT_NEAR(sum_of_plane.row[a][p], sum_of_solid.row[a][p], 1e-11);
-      for (int k = 0; k < law_.NumModuli(); ++k) {
-        EXPECT_NEAR(stresses_of_plane[k].row[a][p],
-                    stresses_of_solid[k].row[a][p], 1e-12);
-      }
-    }
-    for (const int b : kPlacesOfPlane) {
+  struct Found {
+    std::vector<PointMatrices> columns;
+    PointTangents tangents;
+    PointMatrices stress;
+  };
+  const auto find = [&](GradientEntries entries) {
+    Found found;
+    found.columns.resize(law_.NumModuli());
+    law_.StressesAtPoints(gradients, entries, kCount, found.columns.data());
+    law_.TangentsAtPoints(Moduli(), gradients, entries, kCount, found.tangents,
+                          &found.stress);
+    return found;
+  };
+  const Found of_solid = find(GradientEntries::kAll);
+  const auto expect_same = [&](GradientEntries entries,
+                               const std::vector<int>& places) {
+    const Found found = find(entries);
+    for (const int a : places) {
       for (int p = 0; p < kCount; ++p) {
-        EXPECT_NEAR(of_plane.row[TangentRow(a, b)][p],
-                    of_solid.row[TangentRow(a, b)][p], 1e-11);
+        EXPECT_NEAR(found.stress.row[a][p], of_solid.stress.row[a][p], 1e-11);
+        for (int k = 0; k < law_.NumModuli(); ++k) {
+          EXPECT_NEAR(found.columns[k].row[a][p], of_solid.columns[k].row[a][p],
+                      1e-12);
+        }
+        for (const int b : places) {
+          EXPECT_NEAR(found.tangents.row[TangentRow(a, b)][p],
+                      of_solid.tangents.row[TangentRow(a, b)][p], 1e-11);
+        }
       }
     }
-  }
+  };
+  expect_same(GradientEntries::kOfPlane,
+              {kPlacesOfPlane.begin(), kPlacesOfPlane.end()});
+  expect_same(GradientEntries::kAcross, {kCrossPlace});
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, LargeStrainLaws,
