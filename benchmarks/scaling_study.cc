@@ -24,7 +24,7 @@ namespace {
 constexpr IsotropicElasticity kElasticity = {10e3, 0.33};
 constexpr double kDeviation = 0.01;
 constexpr std::uint64_t kSeed = 1;
-constexpr ProcessLimits kLimits = {100, std::int64_t{16} << 30};
+constexpr ProcessLimits kLimits = {300, std::int64_t{16} << 30};
 
 // Runs are repeated until they have taken this long together, and their mean
 // counts: the clock of a virtual processor may stand still for milliseconds.
@@ -51,10 +51,10 @@ std::vector<Body> Bodies(bool is_quick) {
           {"organ", MeasuredOrgan, {2000, 20000, 200000, 1000000}}};
 }
 
-// Holds a scene's size, and the peak memory of a process that only makes it.
-struct SceneSize {
-  int size;
-  std::int64_t tetrahedra;
+// A scene that all processes of its size share, and the memory of one that only
+// has it.
+struct MeasuredScene {
+  Scene scene;
   double memory;  // Byte.
 };
 
@@ -71,12 +71,23 @@ struct Run {
   bool IsMeasured() const { return repetitions > 0; }
 };
 
-Scene NoisyScene(const Body& body, int size) {
-  return WithNoise(body.scene(size, kElasticity), kDeviation, kSeed);
+// Makes a scene on one thread: the threads of a process are not those of its
+// children, which would wait for them.
+MeasuredScene MakeScene(const Body& body, int size) {
+  SetThreads(1);
+  MeasuredScene measured = {
+      WithNoise(body.scene(size, kElasticity), kDeviation, kSeed), 0};
+  measured.memory = static_cast<double>(
+      RunInChildProcess(kLimits, [] { return std::string(); }).peak_memory);
+  return measured;
 }
 
-std::string RunEstimator(std::string_view name, const Body& body, int size) {
-  const Scene scene = NoisyScene(body, size);
+int NumThreads() {
+  return static_cast<int>(std::thread::hardware_concurrency());
+}
+
+std::string RunEstimator(std::string_view name, const Scene& scene) {
+  SetThreads(NumThreads());
   const std::shared_ptr<const Estimator> estimator = MakeEstimator(name);
   Estimate estimate;
   int repetitions = 0;
@@ -95,15 +106,16 @@ std::string RunEstimator(std::string_view name, const Body& body, int size) {
   return output.str();
 }
 
-Run Measure(std::string_view name, const Body& body, const SceneSize& scene) {
+Run Measure(std::string_view name, const MeasuredScene& measured) {
   Run run;
-  run.tetrahedra = static_cast<double>(scene.tetrahedra);
+  run.tetrahedra = static_cast<double>(measured.scene.mesh.NumElements());
   run.report = RunInChildProcess(
-      kLimits, [&] { return RunEstimator(name, body, scene.size); });
+      kLimits, [&] { return RunEstimator(name, measured.scene); });
   if (run.report.outcome == ProcessOutcome::kFinished) {
     std::istringstream(run.report.output) >> run.status >> run.seconds >>
         run.processor_seconds >> run.repetitions >> run.factorizations;
-    run.own_memory = static_cast<double>(run.report.peak_memory) - scene.memory;
+    run.own_memory =
+        static_cast<double>(run.report.peak_memory) - measured.memory;
   }
   return run;
 }
@@ -141,60 +153,67 @@ double Slope(const std::vector<Run>& runs, double Run::*value) {
                            : SolveLeastSquares(lines, values)(1);
 }
 
-std::vector<SceneSize> MakeScenes(const Body& body, Progress& progress) {
-  std::vector<SceneSize> scenes;
+// The runs of an estimator, up to the size that a limit ends.
+struct RunsOfEstimator {
+  std::vector<Run> measured;
+  std::string limit;
+};
+
+/// Adds a row of the estimator with this scene.
+void MeasureSize(const std::string& name, const std::string& body,
+                 const MeasuredScene& scene, RunsOfEstimator& runs,
+                 Table& table) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const std::int64_t tetrahedra = scene.scene.mesh.NumElements();
+  if (!runs.limit.empty()) {
+    table.AddRow({name, body, tetrahedra,
+                  "not run: " + runs.limit + " at a smaller size", "", kNone,
+                  kNone, std::int64_t{0}, kNone, kNone,
+                  scene.memory / kMebibyte, kNone});
+    return;
+  }
+  const Run run = Measure(name, scene);
+  const bool is_measured = run.IsMeasured();
+  table.AddRow({name, body, tetrahedra, OutcomeName(run.report.outcome),
+                run.status, run.seconds, run.processor_seconds,
+                std::int64_t{run.repetitions},
+                is_measured ? double(run.factorizations) : kNone,
+                static_cast<double>(run.report.peak_memory) / kMebibyte,
+                scene.memory / kMebibyte, run.own_memory / kMebibyte});
+  if (is_measured) {
+    runs.measured.push_back(run);
+  } else {
+    runs.limit = OutcomeName(run.report.outcome);
+  }
+}
+
+void MeasureBody(const Body& body, Progress& progress, Table& table,
+                 Table& slopes) {
+  const std::vector<std::string_view> names = EstimatorNames();
+  std::vector<RunsOfEstimator> runs(names.size());
   for (const int size : body.sizes) {
     progress.Show("scaling: scene of " + body.name + " " +
                   std::to_string(size));
-    const ProcessReport report = RunInChildProcess(kLimits, [&] {
-      return std::to_string(NoisyScene(body, size).mesh.NumElements());
-    });
-    scenes.push_back({size, std::stoll(report.output),
-                      static_cast<double>(report.peak_memory)});
-  }
-  return scenes;
-}
-
-/// Adds a row of the estimator for each size, and returns the runs up to the
-/// size that a limit ends.
-std::vector<Run> MeasureSizes(const std::string& name, const Body& body,
-                              const std::vector<SceneSize>& scenes,
-                              Progress& progress, Table& table) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Run> measured;
-  std::string limit;
-  for (const SceneSize& scene : scenes) {
-    if (!limit.empty()) {
-      table.AddRow({name, body.name, scene.tetrahedra,
-                    "not run: " + limit + " at a smaller size", "", kNone,
-                    kNone, std::int64_t{0}, kNone, kNone,
-                    scene.memory / kMebibyte, kNone});
-      continue;
-    }
-    progress.Show("scaling: " + name + " with " + body.name + " of " +
-                  std::to_string(scene.tetrahedra) + " tetrahedra");
-    const Run run = Measure(name, body, scene);
-    const bool is_measured = run.IsMeasured();
-    table.AddRow({name, body.name, scene.tetrahedra,
-                  OutcomeName(run.report.outcome), run.status, run.seconds,
-                  run.processor_seconds, std::int64_t{run.repetitions},
-                  is_measured ? double(run.factorizations) : kNone,
-                  static_cast<double>(run.report.peak_memory) / kMebibyte,
-                  scene.memory / kMebibyte, run.own_memory / kMebibyte});
-    if (is_measured) {
-      measured.push_back(run);
-    } else {
-      limit = OutcomeName(run.report.outcome);
+    const MeasuredScene scene = MakeScene(body, size);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      progress.Show("scaling: " + std::string(names[i]) + " with " + body.name +
+                    " of " + std::to_string(scene.scene.mesh.NumElements()) +
+                    " tetrahedra");
+      MeasureSize(std::string(names[i]), body.name, scene, runs[i], table);
     }
   }
-  return measured;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::vector<Run>& measured = runs[i].measured;
+    slopes.AddRow({std::string(names[i]), body.name,
+                   std::int64_t(std::min(measured.size(), kSizesOfSlope)),
+                   Slope(measured, &Run::seconds),
+                   Slope(measured, &Run::own_memory)});
+  }
 }
 
 }  // namespace
 
 StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
-  const int threads = static_cast<int>(std::thread::hardware_concurrency());
-  SetThreads(threads);
   Table table(
       "scaling",
       {"estimator", "body", "tetrahedra [1]", "outcome", "status", "time [s]",
@@ -203,15 +222,7 @@ StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
   Table slopes("scaling_slopes", {"estimator", "body", "sizes [1]",
                                   "time_slope [1]", "own_memory_slope [1]"});
   for (const Body& body : Bodies(is_quick)) {
-    const std::vector<SceneSize> scenes = MakeScenes(body, progress);
-    for (const std::string_view name : EstimatorNames()) {
-      const std::vector<Run> measured =
-          MeasureSizes(std::string(name), body, scenes, progress, table);
-      slopes.AddRow({std::string(name), body.name,
-                     std::int64_t(std::min(measured.size(), kSizesOfSlope)),
-                     Slope(measured, &Run::seconds),
-                     Slope(measured, &Run::own_memory)});
-    }
+    MeasureBody(body, progress, table, slopes);
   }
   return {{table, slopes},
           {{"cube", "of five tetrahedra in each of n x n x n cells"},
@@ -222,7 +233,7 @@ StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
            {"limit_of_memory [MiB]",
             static_cast<double>(kLimits.memory) / kMebibyte},
            {"limits", "of a process with its scene and all repetitions"},
-           {"threads", threads},
+           {"threads", NumThreads()},
            {"peak_memory",
             "largest resident memory of a process of its own, program and "
             "scene included; of one that a limit ended, up to then"},
