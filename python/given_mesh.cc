@@ -1,10 +1,14 @@
 #include "python/given_mesh.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/io/mesh/mesh_file_check.h"
 #include "elastimate/io/mesh/simplices.h"
@@ -46,14 +50,17 @@ void GivenMesh::CompleteFacets(Eigen::MatrixXi& facets) const {
   for (const int node : facets.reshaped()) {
     RequireUsed(node, "a facet of a load");
   }
-  constexpr int kQuadrilateral = 4;
-  if (file_.kind != ElementKind::kTet4 || facets.rows() != kQuadrilateral) {
+  constexpr Eigen::Index kQuadrilateral = 4;
+  const bool is_linear = file_.kind == ElementKind::kTet4;
+  if ((!is_linear && file_.kind != ElementKind::kTet10) ||
+      facets.rows() == file_.Topology().NumNodesOfFace()) {
     return;
   }
   std::vector<std::vector<int>> parts;
   for (const auto& facet : facets.colwise()) {
+    const auto vertices = facet.head(std::min(facets.rows(), kQuadrilateral));
     for (std::vector<int>& part :
-         CutFace(std::vector<int>(facet.begin(), facet.end()))) {
+         CutFace(std::vector<int>(vertices.begin(), vertices.end()))) {
       parts.push_back(std::move(part));
     }
   }
@@ -63,6 +70,37 @@ void GivenMesh::CompleteFacets(Eigen::MatrixXi& facets) const {
     std::copy(parts[i].begin(), parts[i].end(),
               facets.col(Eigen::Index(i)).begin());
   }
+  if (!is_linear) {
+    facets = WithMiddles(facets);
+  }
+}
+
+Eigen::MatrixXi GivenMesh::WithMiddles(const Eigen::MatrixXi& triangles) const {
+  const auto vertices_of = [](const Eigen::MatrixXi& facets, Eigen::Index i) {
+    std::array<int, 3> vertices = {facets(0, i), facets(1, i), facets(2, i)};
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  };
+  const Eigen::MatrixXi boundary = BoundaryFacets(AllNodes(file_));
+  std::map<std::array<int, 3>, Eigen::Index> places;
+  for (Eigen::Index i = 0; i < boundary.cols(); ++i) {
+    places.emplace(vertices_of(boundary, i), i);
+  }
+  Eigen::MatrixXi facets(boundary.rows(), triangles.cols());
+  for (Eigen::Index i = 0; i < triangles.cols(); ++i) {
+    const auto vertices = vertices_of(triangles, i);
+    const auto found = places.find(vertices);
+    if (found == places.end()) {
+      throw std::invalid_argument(
+          "a facet of a load has the corners " + std::to_string(vertices[0]) +
+          ", " + std::to_string(vertices[1]) + " and " +
+          std::to_string(vertices[2]) +
+          ", which is no face on the surface of the mesh; give faces of it, or "
+          "a Box");
+    }
+    facets.col(i) = boundary.col(found->second);
+  }
+  return facets;
 }
 
 void GivenMesh::Complete(LoadCase& load_case) const {

@@ -49,9 +49,10 @@ class GivenMesh {
   }
 
   /// Completes a load case over all nodes, whose arrays have one column for
-  /// each point.  Facets of four nodes are cut as linear cells are.  Throws
+  /// each point.  Facets of quadrilaterals, with or without middle nodes, are
+  /// cut as cells are, and get the middle nodes of the elements.  Throws
   /// std::invalid_argument for a load or a resultant on a node that no element
-  /// uses.
+  /// uses, and for a facet that is no face.
   void Complete(LoadCase& load_case) const;
   /// Completes supports in the same way: an added node is held where all nodes
   /// around it are.
@@ -71,6 +72,9 @@ class GivenMesh {
 
  private:
   void CompleteFacets(Eigen::MatrixXi& facets) const;
+  /// Returns the faces on the surface of quadratic tetrahedra that have these
+  /// vertices.
+  Eigen::MatrixXi WithMiddles(const Eigen::MatrixXi& triangles) const;
   void RequireUsed(int node, const std::string& of) const;
 
   Eigen::Index num_cells_;

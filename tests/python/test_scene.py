@@ -326,21 +326,29 @@ def test_regions_and_weights_are_those_of_cells():
         em.Scene(nodes, cells, loads=[em.BodyForce(np.ones((4, 3)))], supports=held)
 
 
-def test_facets_of_four_nodes_are_cut_as_cells_are():
-    nodes, cells = bar(1, seed=2)
+@pytest.mark.parametrize("order", [1, 2])
+def test_facets_of_four_nodes_are_cut_as_cells_are(order):
+    nodes, cells = bar(order, seed=2)
     held, expected = pulled(nodes)
-    corners = [[3, 0, 0], [3, 1, 0], [3, 1, 1], [3, 0, 1]]
-    facet = [int(np.flatnonzero((nodes == corner).all(axis=1))[0]) for corner in corners]
+    at = lambda place: int(np.flatnonzero((nodes == place).all(axis=1))[0])
+    facet = [at(corner) for corner in ([3, 0, 0], [3, 1, 0], [3, 1, 1], [3, 0, 1])]
     used = nodes[:, 0] < 7
-    scene = em.Scene(nodes, cells, supports=held, loads=[em.Traction([8, 0, 0], [facet])])
-    u = scene.simulate(E=100, nu=0.25).displacements
-    np.testing.assert_allclose(u[used], expected[used], atol=1e-13)
+    given = [facet]
+    if order == 2:
+        given.append(facet + [at(middle) for middle in ([3, 0.5, 0], [3, 1, 0.5], [3, 0.5, 1], [3, 0, 0.5])])
+    for one in given:
+        scene = em.Scene(nodes, cells, supports=held, loads=[em.Traction([8, 0, 0], [one])])
+        u = scene.simulate(E=100, nu=0.25).displacements
+        np.testing.assert_allclose(u[used], expected[used], atol=1e-13)
     unused = int(np.flatnonzero(~used)[0])
-    for node in (unused, -1, 99):
+    for node in (unused, -1, 999):
         with pytest.raises(ValueError, match=f"names node {node}, which no element uses"):
             em.Scene(nodes, cells, loads=[em.Traction([8, 0, 0], [[node, *facet[1:]]])])
         with pytest.raises(ValueError, match=f"names node {node}, which no element uses"):
             em.Scene(nodes, cells, resultants=[em.Resultant([1, 0, 0], [node], 1)])
+    inside = [at(corner) for corner in ([1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 0, 1])]
+    with pytest.raises(ValueError, match="is no(t a)? face"):
+        em.Scene(nodes, cells, loads=[em.Traction([8, 0, 0], [inside])])
 
 
 def test_middle_nodes_may_stand_among_vertices():
