@@ -37,7 +37,7 @@ namespace elastimate {
 /// to kSmallestPoissonRatio or kLargestPoissonRatio.
 class CertifiedFit {
  public:
-  static constexpr double kUsualSmallest = -0.95;
+  static constexpr double kUsualSmallest = -0.7;
   static constexpr double kUsualLargestOfMultigrid = 0.495;
 
   /// Factorises once, and once more where nu may be near 1/2 or near -1.  Both

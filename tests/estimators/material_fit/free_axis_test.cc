@@ -105,7 +105,7 @@ TEST(FreeAxis, IsFoundExactlyWithoutNoise) {
 
 // A misfit has minima near wrong axes.  Where noise hides which of them is the
 // least, the axis is not determined.
-TEST(FreeAxis, IsThatOfTheLeastMisfit) {
+TEST(FreeAxisStatistics, IsThatOfTheLeastMisfit) {
   constexpr int kSeeds = 3;
   int num_usable = 0;
   for (const Eigen::Vector3d& axis :

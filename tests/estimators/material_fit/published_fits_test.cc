@@ -82,7 +82,7 @@ Eigen::Index NodeAt(const Mesh& mesh, const Eigen::Vector3d& at) {
 // a sum of squares of 5.1e-10 [febiosoftware/TestSuite, Verify/op06.feb,
 // Verify/oi06.feb and code/linuxGoldStandards.py].  The hexahedra of that
 // program evaluate the volume at their integration points.
-TEST(PublishedFits, FindPoissonsRatioOfTheSheetOfFebio) {
+TEST(PublishedFitsLong, FindPoissonsRatioOfTheSheetOfFebio) {
   const double published = 0.35;
   const double narrowing = 0.0194104;
   const Mesh mesh =
@@ -123,7 +123,7 @@ TEST(PublishedFits, FindPoissonsRatioOfTheSheetOfFebio) {
 // middle of an edge sinks by 1.2, with a sum of squares of 4.6e-15
 // [febiosoftware/TestSuite, Verify/op11.feb, Verify/oi11.feb and
 // code/linuxGoldStandards.py]; E itself is not published.
-TEST(PublishedFits, FindYoungsModulusOfTheBeamOfFebio) {
+TEST(PublishedFitsLong, FindYoungsModulusOfTheBeamOfFebio) {
   const double sinks = 1.2;
   const Mesh mesh =
       BlockOfHexahedra(Eigen::Vector3i(10, 1, 1), Eigen::Vector3d(10, 1, 1));
@@ -176,7 +176,7 @@ constexpr std::array<std::pair<double, double>, 8> kPressedCube = {
 // exponents 6 and -6, and a bulk modulus of a hundred times its c1.  The law of
 // Yeoh has to explain the data better, and to have the parameters of a linear
 // fit to the stress of an incompressible cube.
-TEST(PublishedFits, ExplainThePressedCubeOfGibbon) {
+TEST(PublishedFitsLong, ExplainThePressedCubeOfGibbon) {
   const double c1 = 0.000322322142618;
   const double height = 10;
   const Mesh mesh = BlockOfHexahedra(Eigen::Vector3i::Ones(),
@@ -328,7 +328,7 @@ Supports SupportsOfTube(const Mesh& mesh, const TubeState& state) {
 
 // With the stretch along the axis at rest, the pressure depends on c10 + c01
 // alone; a second stretch tells them apart.
-TEST(PublishedFits, TellTheModuliOfAnInflatedTubeApart) {
+TEST(PublishedFitsLong, TellTheModuliOfAnInflatedTubeApart) {
   const Mesh mesh = QuarterOfTube();
   Scene scene = UnsupportedScene(mesh);
   scene.materials = {

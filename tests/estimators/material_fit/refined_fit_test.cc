@@ -63,7 +63,7 @@ TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
 INSTANTIATE_TEST_SUITE_P(LinearSolids, RefinedFitOfKinds,
                          ::testing::ValuesIn(testing::KindsOf(3, 1)),
                          testing::KindTestName);
-INSTANTIATE_TEST_SUITE_P(QuadraticSolids, RefinedFitOfKinds,
+INSTANTIATE_TEST_SUITE_P(QuadraticSolidsLong, RefinedFitOfKinds,
                          ::testing::ValuesIn(testing::KindsOf(3, 2)),
                          testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(LinearPlanes, RefinedFitOfKinds,
@@ -233,7 +233,7 @@ TEST(RefinedFitOfSpecialScenes, OfQuadraticElementsDividesThem) {
 
 // A bar that a clamp holds from x = 0 to beyond the middle of the edges around
 // its end, of which the mask of its nodes does not tell.
-TEST(RefinedFitOfSpecialScenes, HoldsWhatTheEndOfASupportLeavesOpen) {
+TEST(RefinedFitOfSpecialScenesLong, HoldsWhatTheEndOfASupportLeavesOpen) {
   Scene scene;
   scene.mesh = testing::BoxMesh({10, 3, 3}, {3, 1, 1});
   const Eigen::Index num_nodes = scene.mesh.NumNodes();

@@ -111,12 +111,12 @@ TEST_P(SupportsOfCases, AddTheirInformation) {
   EXPECT_LT((both - expected).norm(), 0.02 * expected.norm());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SupportsOfCases,
+INSTANTIATE_TEST_SUITE_P(AllLong, SupportsOfCases,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
                          testing::KindTestName);
 
 // The specimen is finer than the mesh.
-TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
+TEST(SupportsOfCasesOfElementsLong, HoldWhatElementsMiss) {
   for (const KindOfSection& kind : testing::AllKindsOfSections()) {
     if (kind.model == SectionModel::kSolid) {
       continue;

@@ -214,7 +214,7 @@ TEST_P(UnknownMotionOfKinds,
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, UnknownMotionOfKinds,
+INSTANTIATE_TEST_SUITE_P(AllLong, UnknownMotionOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
                          testing::KindTestName);
 
@@ -421,7 +421,7 @@ TEST_P(ElementsOfUnknownMotion, HaveAMeshErrorThatIsKnown) {
 INSTANTIATE_TEST_SUITE_P(LinearSolids, ElementsOfUnknownMotion,
                          ::testing::ValuesIn(testing::KindsOf(3, 1)),
                          testing::KindTestName);
-INSTANTIATE_TEST_SUITE_P(QuadraticSolids, ElementsOfUnknownMotion,
+INSTANTIATE_TEST_SUITE_P(QuadraticSolidsLong, ElementsOfUnknownMotion,
                          ::testing::ValuesIn(testing::KindsOf(3, 2)),
                          testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(LinearPlanes, ElementsOfUnknownMotion,

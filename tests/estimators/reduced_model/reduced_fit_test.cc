@@ -170,7 +170,7 @@ TEST(ReducedFit, SolvesAsTheFullModelDoes) {
 // which has a single vector, is poor.  The best fit of the reduced model is
 // elsewhere and leaves a large residual.  The lower bounds must not exclude the
 // truth.
-TEST(ReducedFit, LowerBoundsHoldWhereTheModelIsPoor) {
+TEST(ReducedFitStatistics, LowerBoundsHoldWhereTheModelIsPoor) {
   for (const std::string& shape : testing::ShapeNames()) {
     for (const double nu : {-0.8, 0.1, 0.45, 0.499, 0.4997}) {
       for (const Bounds& youngs_modulus :

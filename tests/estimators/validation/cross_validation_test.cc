@@ -126,7 +126,7 @@ TEST(CrossValidationStatistics, AreCalibratedUnderACameraThatTurned) {
   EXPECT_NEAR(MeanChiSquare(SeenByATurnedCamera(scene), true), 1, 0.12);
 }
 
-TEST(CrossValidation, PredictsWhatACameraMeasuredThatTurned) {
+TEST(CrossValidationLong, PredictsWhatACameraMeasuredThatTurned) {
   Scene scene = testing::ShearedBlock();
   scene.origin = Origin::kMeasured;
   scene.load_cases[0].displacement /= 10;
