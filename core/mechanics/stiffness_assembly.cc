@@ -6,18 +6,34 @@ namespace elastimate {
 
 StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
                                      const DegreesOfFreedom& degrees_of_freedom)
-    : graph_(mesh), free_components_(mesh.NumNodes(), 0) {
+    : mesh_(mesh), graph_(mesh), free_components_(mesh.NumNodes(), 0) {
   for (const Eigen::Index dof : degrees_of_freedom.free) {
     free_components_[dof / degrees_of_freedom.dimension] |=
         1U << (dof % degrees_of_freedom.dimension);
   }
   BuildPattern(degrees_of_freedom);
-  const auto values_of = [&](const Eigen::Vector2d& coefficients) {
-    return ValuesOf(StiffnessBlocks(
-        mesh, graph_, coefficients.replicate(1, mesh.NumElements())));
-  };
-  h_ = values_of({1, 0});
-  j_ = values_of({0, 1});
+  h_ = Assemble({1, 0});
+  j_ = Assemble({0, 1});
+}
+
+Eigen::VectorXd StiffnessAssembly::Assemble(
+    const Eigen::Vector2d& coefficients) const {
+  return ValuesOf(StiffnessBlocks(
+      mesh_, graph_, coefficients.replicate(1, mesh_.NumElements())));
+}
+
+void StiffnessAssembly::Combine(double poisson_ratio,
+                                Eigen::VectorXd& values) const {
+  if (HasBases()) {
+    values = h_ + poisson_ratio * j_;
+  } else {
+    values = Assemble({1, poisson_ratio});
+  }
+}
+
+void StiffnessAssembly::ForgetBases() {
+  h_.resize(0);
+  j_.resize(0);
 }
 
 void StiffnessAssembly::BuildPattern(

@@ -26,8 +26,9 @@ struct SymmetricPattern {
 /// one fixed sparse pattern, so that A(nu) = H + nu J is one axpy.
 class StiffnessAssembly {
  public:
-  /// Assembles the pattern and the values.  Precondition: a valid mesh.
-  /// O(num_elements) time and memory; it forms no triplets.
+  /// Assembles the pattern and the values.  Precondition: a valid mesh, which
+  /// has to outlive this object.  O(num_elements) time and memory; it forms no
+  /// triplets.
   StiffnessAssembly(const Mesh& mesh,
                     const DegreesOfFreedom& degrees_of_freedom);
 
@@ -42,17 +43,24 @@ class StiffnessAssembly {
 
   /// Returns the values of H + nu J.
   Eigen::VectorXd Combine(double poisson_ratio) const {
-    return h_ + poisson_ratio * j_;
+    Eigen::VectorXd values;
+    Combine(poisson_ratio, values);
+    return values;
   }
   /// Sets `values` to those of H + nu J.  Memory that is used again takes half
   /// the time.
-  void Combine(double poisson_ratio, Eigen::VectorXd& values) const {
-    values = h_ + poisson_ratio * j_;
-  }
+  void Combine(double poisson_ratio, Eigen::VectorXd& values) const;
+
+  /// Gives back the memory of H and J.  Combine then takes an element pass.
+  void ForgetBases();
+  bool HasBases() const { return h_.size() > 0; }
 
  private:
   void BuildPattern(const DegreesOfFreedom& degrees_of_freedom);
+  /// Returns the values of a H + b J for the coefficients a, b.
+  Eigen::VectorXd Assemble(const Eigen::Vector2d& coefficients) const;
 
+  const Mesh& mesh_;
   NodeGraph graph_;
   SymmetricPattern pattern_;
   /// The free components of each node, as bits.

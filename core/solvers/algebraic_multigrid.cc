@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "elastimate/core/solvers/free_memory.h"
+
 namespace elastimate {
 namespace {
 
@@ -49,8 +51,10 @@ bool AlgebraicMultigrid::Factorize(const Eigen::VectorXd& values) {
   restrictions_.clear();
   spaces_ = {};  // Its memory is needed.
   smallest_eigenvalue_ = 1;
-  return values.allFinite() && find_spaces_(values, spaces_) &&
-         FactorizeCoarsest() && SetUpCycle();
+  const bool is_set_up = values.allFinite() && find_spaces_(values, spaces_) &&
+                         FactorizeCoarsest() && SetUpCycle();
+  ReturnFreeMemory();
+  return is_set_up;
 }
 
 bool AlgebraicMultigrid::FactorizeCoarsest() {

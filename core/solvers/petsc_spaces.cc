@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/solvers/free_memory.h"
+
 #ifdef ELASTIMATE_HAS_ML
 // ml_utils.h declares this function, but would bring in all of Trilinos.
 extern "C" void ML_set_random_seed(int seed);
@@ -99,6 +101,8 @@ class PetscMatrix {
   MultigridSpaces FindSpaces(const Mesh& mesh);
 
  private:
+  /// Appends the matrices of all spaces but the finest, and all interpolations.
+  void AppendCoarseSpaces(MultigridSpaces& spaces) const;
   void NumberBlocks();
   void BuildPattern();
   /// Finds the rows of numbers for the rows of blocks that have these columns.
@@ -370,26 +374,35 @@ MultigridSpaces PetscMatrix::FindSpaces(const Mesh& mesh) {
   Check(PCSetOperators(preconditioner_, matrix_, matrix_));
   Check(PCSetFromOptions(preconditioner_));
   Check(PCSetUp(preconditioner_));
+  AppendCoarseSpaces(spaces);
+  // The finest matrix is copied last, when PETSc has given back the memory of
+  // all that it made of it.
+  Check(PCDestroy(&preconditioner_));
+  ReturnFreeMemory();
+  spaces.matrices.push_back(InBlocks(matrix_, dimension_, dimension_, true));
+  return spaces;
+}
+
+void PetscMatrix::AppendCoarseSpaces(MultigridSpaces& spaces) const {
   PetscInt num_spaces = 0;
   Check(PCMGGetLevels(preconditioner_, &num_spaces));
-  int coarse_block = 0;
+  const int coarse_block = 3 * dimension_ - 3;
   for (PetscInt space = 0; space < num_spaces; ++space) {
-    KSP smoother = nullptr;
-    Mat matrix = nullptr;
-    Check(PCMGGetSmoother(preconditioner_, space, &smoother));
-    Check(KSPGetOperators(smoother, nullptr, &matrix));
     const bool is_finest = space + 1 == num_spaces;
-    const int block = is_finest ? dimension_ : 3 * dimension_ - 3;
-    spaces.matrices.push_back(InBlocks(matrix, block, block, is_finest));
+    if (!is_finest) {
+      KSP smoother = nullptr;
+      Mat matrix = nullptr;
+      Check(PCMGGetSmoother(preconditioner_, space, &smoother));
+      Check(KSPGetOperators(smoother, nullptr, &matrix));
+      spaces.matrices.push_back(InBlocks(matrix, coarse_block, coarse_block));
+    }
     if (space > 0) {
       Mat interpolation = nullptr;
       Check(PCMGGetInterpolation(preconditioner_, space, &interpolation));
-      spaces.interpolations.push_back(
-          InBlocks(interpolation, block, coarse_block));
+      spaces.interpolations.push_back(InBlocks(
+          interpolation, is_finest ? dimension_ : coarse_block, coarse_block));
     }
-    coarse_block = block;
   }
-  return spaces;
 }
 
 }  // namespace

@@ -51,6 +51,8 @@ StiffnessSolver::StiffnessSolver(const Mesh& mesh, const Supports& supports,
     }
   }
   if (is_multigrid_) {
+    // Its set-up takes much longer than an element pass, and much memory.
+    assembly_->ForgetBases();
     solver_ = MakeMultigrid(mesh, *assembly_, degrees_of_freedom_);
   }
 }
@@ -64,6 +66,7 @@ bool StiffnessSolver::Factorize(double poisson_ratio) {
     return false;
   }
   assembly_->Combine(poisson_ratio, values_);
+  work_.element_passes += assembly_->HasBases() ? 0 : 1;
   if (!FactorizeValues()) {
     return false;
   }

@@ -57,7 +57,7 @@ class StiffnessSolver {
   /// Preconditions: a valid scene; HasMultigrid() for kMultigrid.  Throws
   /// std::invalid_argument with the sentence of WhyNotHeld when the supports do
   /// not hold the specimen, and std::bad_alloc when the factor does not fit
-  /// into memory.
+  /// into memory.  `mesh` has to outlive this object.
   StiffnessSolver(const Mesh& mesh, const Supports& supports, SolverKind kind);
 
   /// Factorises A(nu); does nothing when nu is the present one.  Returns false

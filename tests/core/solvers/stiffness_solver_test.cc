@@ -107,7 +107,10 @@ TEST(StiffnessSolver, FactorisesWhereMultigridDoesNotConverge) {
   constexpr double kNearlyIncompressible = 0.49999999;
   ASSERT_TRUE(direct.Factorize(kNearlyIncompressible));
   ASSERT_TRUE(solver.Factorize(kNearlyIncompressible));
-  EXPECT_EQ(solver.Solve(force), direct.Solve(force));
+  // One assembles A(nu) from its bases, the other at once; that nu makes of
+  // their rounding about this.
+  constexpr double kRounding = 1e-6;
+  EXPECT_TRUE(solver.Solve(force).isApprox(direct.Solve(force), kRounding));
   EXPECT_EQ(solver.PoissonRatio(), kNearlyIncompressible);
   EXPECT_FALSE(solver.UsesMultigrid());
   EXPECT_THAT(solver.Notice(),
