@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
@@ -281,6 +282,9 @@ bool CertifiedFit::SearchFurther(
   // Beyond this excess of the sum of squares over its least, in variances, no
   // interval of nu ends.
   constexpr double kFarExcess = 10;
+  // A fit that leaves more than this share of the measurement may be that of
+  // another nu, far below the usual ones.
+  constexpr double kPoorFit = 0.05;
   const double variance =
       best_.square_sum / static_cast<double>(observed.Size());
   const auto is_near_least = [&](const ReducedFit::ResidualBracket& end) {
@@ -288,8 +292,10 @@ bool CertifiedFit::SearchFurther(
            kFarExcess * variance;
   };
   bool has_grown = false;
+  const bool is_poor =
+      best_.square_sum > kPoorFit * kPoorFit * SquaredNorm(observed.Measured());
   if (*searched_.lower > *largest_range_.lower &&
-      is_near_least(brackets.front())) {
+      (is_poor || is_near_least(brackets.front()))) {
     searched_.lower = largest_range_.lower;
     has_grown = true;
   }

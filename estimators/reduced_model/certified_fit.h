@@ -34,7 +34,8 @@ namespace elastimate {
 /// kUsualSmallest to kLargestPoissonRatio, by multigrid, which does not
 /// converge next to 1/2, to kUsualLargestOfMultigrid.  Where the residual at an
 /// end that no bound has set is near the least, the search goes on beyond it,
-/// to kSmallestPoissonRatio or kLargestPoissonRatio.
+/// to kSmallestPoissonRatio or kLargestPoissonRatio; and to the former where
+/// the least residual is large.
 class CertifiedFit {
  public:
   static constexpr double kUsualSmallest = -0.7;
