@@ -294,10 +294,15 @@ bool CertifiedFit::SearchFurther(
   bool has_grown = false;
   const bool is_poor =
       best_.square_sum > kPoorFit * kPoorFit * SquaredNorm(observed.Measured());
-  if (*searched_.lower > *largest_range_.lower &&
-      (is_poor || is_near_least(brackets.front()))) {
-    searched_.lower = largest_range_.lower;
-    has_grown = true;
+  const auto search_from = [&](double lower) {
+    has_grown = has_grown || lower < *searched_.lower;
+    searched_.lower = std::min(*searched_.lower, lower);
+  };
+  if (is_poor) {
+    search_from(std::max(*largest_range_.lower, kSmallestOfPoorFits));
+  }
+  if (is_near_least(brackets.front())) {
+    search_from(*largest_range_.lower);
   }
   if (*searched_.upper < *largest_range_.upper &&
       is_near_least(brackets.back())) {

@@ -34,11 +34,12 @@ namespace elastimate {
 /// kUsualSmallest to kLargestPoissonRatio, by multigrid, which does not
 /// converge next to 1/2, to kUsualLargestOfMultigrid.  Where the residual at an
 /// end that no bound has set is near the least, the search goes on beyond it,
-/// to kSmallestPoissonRatio or kLargestPoissonRatio; and to the former where
-/// the least residual is large.
+/// to kSmallestPoissonRatio or kLargestPoissonRatio.  Where the least residual
+/// is large, it goes on to kSmallestOfPoorFits.
 class CertifiedFit {
  public:
   static constexpr double kUsualSmallest = -0.7;
+  static constexpr double kSmallestOfPoorFits = -0.95;
   static constexpr double kUsualLargestOfMultigrid = 0.495;
 
   /// Factorises once, and once more where nu may be near 1/2 or near -1.  Both
