@@ -1,9 +1,7 @@
 #include "python/given_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <map>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -12,6 +10,7 @@
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/io/mesh/mesh_file_check.h"
 #include "elastimate/io/mesh/simplices.h"
+#include "elastimate/io/mesh/surface_facets.h"
 
 namespace elastimate {
 namespace {
@@ -76,29 +75,21 @@ void GivenMesh::CompleteFacets(Eigen::MatrixXi& facets) const {
 }
 
 Eigen::MatrixXi GivenMesh::WithMiddles(const Eigen::MatrixXi& triangles) const {
-  const auto vertices_of = [](const Eigen::MatrixXi& facets, Eigen::Index i) {
-    std::array<int, 3> vertices = {facets(0, i), facets(1, i), facets(2, i)};
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
-  };
   const Eigen::MatrixXi boundary = BoundaryFacets(AllNodes(file_));
-  std::map<std::array<int, 3>, Eigen::Index> places;
-  for (Eigen::Index i = 0; i < boundary.cols(); ++i) {
-    places.emplace(vertices_of(boundary, i), i);
-  }
+  const SurfaceFacets surface(boundary, 3);
   Eigen::MatrixXi facets(boundary.rows(), triangles.cols());
   for (Eigen::Index i = 0; i < triangles.cols(); ++i) {
-    const auto vertices = vertices_of(triangles, i);
-    const auto found = places.find(vertices);
-    if (found == places.end()) {
+    const auto vertices = triangles.col(i);
+    const Eigen::Index place = surface.Find(vertices);
+    if (place < 0) {
       throw std::invalid_argument(
-          "a facet of a load has the corners " + std::to_string(vertices[0]) +
-          ", " + std::to_string(vertices[1]) + " and " +
-          std::to_string(vertices[2]) +
+          "a facet of a load has the corners " + std::to_string(vertices(0)) +
+          ", " + std::to_string(vertices(1)) + " and " +
+          std::to_string(vertices(2)) +
           ", which is no face on the surface of the mesh; give faces of it, or "
           "a Box");
     }
-    facets.col(i) = boundary.col(found->second);
+    facets.col(i) = boundary.col(place);
   }
   return facets;
 }

@@ -49,10 +49,11 @@ class GivenMesh {
   }
 
   /// Completes a load case over all nodes, whose arrays have one column for
-  /// each point.  Facets of quadrilaterals, with or without middle nodes, are
-  /// cut as cells are, and get the middle nodes of the elements.  Throws
-  /// std::invalid_argument for a load or a resultant on a node that no element
-  /// uses, and for a facet that is no face.
+  /// each point.  Quadrilateral facets, with or without middle nodes, are cut
+  /// into triangles as the cells are; on quadratic meshes these get the middle
+  /// nodes of the elements.  Throws std::invalid_argument for a load or a
+  /// resultant on a node that no element uses and, on a quadratic mesh, for a
+  /// cut facet that is no face of the surface.
   void Complete(LoadCase& load_case) const;
   /// Completes supports in the same way: an added node is held where all nodes
   /// around it are.
@@ -72,8 +73,8 @@ class GivenMesh {
 
  private:
   void CompleteFacets(Eigen::MatrixXi& facets) const;
-  /// Returns the faces on the surface of quadratic tetrahedra that have these
-  /// vertices.
+  /// Returns the faces on the surface of a mesh of quadratic tetrahedra that
+  /// have these vertices.
   Eigen::MatrixXi WithMiddles(const Eigen::MatrixXi& triangles) const;
   void RequireUsed(int node, const std::string& of) const;
 

@@ -3,7 +3,7 @@
 # Writes what registers each suite of a test program as one test.  A test of its own for each test would start the
 # program, and load its libraries, many times more often, which takes longer than most tests.  A suite that skips a test
 # counts as skipped, unless it fails: then it does not end with the list of skipped tests.  A suite may take TIMEOUT
-# seconds, six times as long where its name ends with "Statistics" or "Long", and twenty times where with "Remade".
+# seconds, six times as long where its name, or that of its instantiation, ends with "Statistics" or "Long", and twenty times where with "Remade".
 execute_process(
   COMMAND ${PROGRAM} --gtest_list_tests
   OUTPUT_VARIABLE lines

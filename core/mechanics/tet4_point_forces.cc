@@ -82,23 +82,22 @@ void AddCornerForces(const CornerRows& rows, int count,
                      const PointValues<1>& volumes,
                      const PointMatrices& stresses, double* forces) {
   constexpr int kLanes = int(hn::MaxLanes(PointLanes()));
-  alignas(64) double of_corners[4][3][kLanes];
+  alignas(64) double of_corners[9][kLanes];
   for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
     const Matrix3 acting =
         LoadNumber(volumes.row[0] + p) *
         Product(LoadMatrix(stresses, p), LoadMatrix(shape_gradients, p));
-    for (int i = 0; i < 3; ++i) {
-      StoreNumber(Number(0) - (acting(i, 0) + acting(i, 1) + acting(i, 2)),
-                  of_corners[0][i]);
-      for (int corner = 1; corner < 4; ++corner) {
-        StoreNumber(acting(i, corner - 1), of_corners[corner][i]);
-      }
+    for (int i = 0; i < 9; ++i) {
+      StoreNumber(acting.entry[i], of_corners[i]);
     }
     for (int lane = 0; lane < kLanes && p + lane < count; ++lane) {
-      for (int corner = 0; corner < 4; ++corner) {
-        double* const at = forces + rows[corner][p + lane];
+      double* const origin = forces + rows[0][p + lane];
+      for (int corner = 0; corner < 3; ++corner) {
+        double* const at = forces + rows[corner + 1][p + lane];
         for (int i = 0; i < 3; ++i) {
-          at[i] += of_corners[corner][i][lane];
+          const double force = of_corners[3 * corner + i][lane];
+          at[i] += force;
+          origin[i] -= force;
         }
       }
     }

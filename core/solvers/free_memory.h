@@ -9,8 +9,9 @@
 
 namespace elastimate {
 
-/// Returns freed memory to the system.  The set-up of multigrid leaves so many
-/// holes in the heap that the process would keep a third more than it uses.
+/// Returns freed memory to the system; does nothing without glibc.  The set-up
+/// of multigrid leaves so many holes in the heap that the process would keep a
+/// third more than it uses.
 inline void ReturnFreeMemory() {
 #ifdef __GLIBC__
   malloc_trim(0);

@@ -34,8 +34,9 @@ namespace elastimate {
 /// kUsualSmallest to kLargestPoissonRatio, by multigrid, which does not
 /// converge next to 1/2, to kUsualLargestOfMultigrid.  Where the residual at an
 /// end that no bound has set is near the least, the search goes on beyond it,
-/// to kSmallestPoissonRatio or kLargestPoissonRatio.  Where the least residual
-/// is large, it goes on to kSmallestOfPoorFits.
+/// to kSmallestPoissonRatio or kLargestPoissonRatio.  Where no
+/// bound is set below and the least residual exceeds 5 % of the measurement, it
+/// goes on to kSmallestOfPoorFits.
 class CertifiedFit {
  public:
   static constexpr double kUsualSmallest = -0.7;

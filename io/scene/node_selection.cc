@@ -1,14 +1,13 @@
 #include "elastimate/io/scene/node_selection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "elastimate/core/text/numbers.h"
+#include "elastimate/io/mesh/surface_facets.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -118,29 +117,14 @@ void SelectGroups(const JsonValue& name, const MeshFile& mesh, NodeMask& mask) {
   }
 }
 
-/// Returns the vertices of a facet, which are the first of its nodes,
-/// ascending; -1 where there are fewer.
-std::array<int, 4> SortedVertices(const MeshFile& mesh,
-                                  const Eigen::MatrixXi& facets,
-                                  Eigen::Index facet) {
-  std::array<int, 4> vertices = {-1, -1, -1, -1};
-  std::copy_n(facets.col(facet).data(), mesh.Topology().NumVerticesOfFace(),
-              vertices.begin());
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
-
 /// Finds, for each facet of the group, the boundary facet of the same vertices.
 void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
                  const PhysicalGroup& group, const Eigen::MatrixXi& boundary,
                  std::vector<Eigen::Index>& chosen) {
-  std::map<std::array<int, 4>, Eigen::Index> facets;
-  for (Eigen::Index facet = 0; facet < boundary.cols(); ++facet) {
-    facets.emplace(SortedVertices(mesh, boundary, facet), facet);
-  }
+  const SurfaceFacets facets(boundary, mesh.Topology().NumVerticesOfFace());
   for (Eigen::Index i = 0; i < group.facets.cols(); ++i) {
-    const auto found = facets.find(SortedVertices(mesh, group.facets, i));
-    if (found == facets.end()) {
+    const Eigen::Index place = facets.Find(group.facets.col(i));
+    if (place < 0) {
       const bool is_solid = mesh.Dimension() == 3;
       const std::string facet = !is_solid ? "edge "
                                 : mesh.Topology().NumVerticesOfFace() == 3
@@ -152,7 +136,7 @@ void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
                      (is_solid ? "a face" : "an edge") +
                      " on the boundary of the " + mesh.Shapes());
     }
-    chosen.push_back(found->second);
+    chosen.push_back(place);
   }
 }
 

@@ -151,7 +151,7 @@ class LawCurve:
 
     law        its name
     stretches  [1], shape (n,)
-    stress     of each test the force per undeformed area [pressure], shape (n,); NaN where no
+    stress     for each test the force per undeformed area [pressure], shape (n,); NaN where no
                stable state was found.  The tests are "uniaxial", "equibiaxial" and "pure_shear",
                whose free sides bear no traction; "simple_shear", F = I + (stretch - 1) e1 e2^T;
                and "volumetric".
@@ -171,16 +171,16 @@ class LawCurve:
 def law_curve(
     law: str, *, stretches: Sequence[float] | Floats | None = None, **parameters: float
 ) -> LawCurve:
-    """Returns the stress of a material of this law, with all its parameters, in five tests.
+    """Returns the stress of a material in five tests.  Give every parameter of its law by name.
 
         em.law_curve("neo_hookean", youngs_modulus=1e4, poisson_ratio=0.45).plot()
 
-    Stretches are from 0.5 to 3 unless they are given.  Raises ValueError for a wrong law,
+    By default there are 101 stretches from 0.5 to 3.  Raises ValueError for a wrong law,
     parameter or stretch.  The cost is some hundred evaluations of the law for each test.
     """
-    where = np.linspace(0.5, 3, 101) if stretches is None else np.asarray(stretches, dtype=float)
-    found = _core.law_curves(law, parameters, where.ravel().tolist())
-    return LawCurve(law, where.ravel(), {test: np.array(stress) for test, stress in found.items()})
+    where = np.linspace(0.5, 3, 101) if stretches is None else np.ravel(stretches).astype(float)
+    found = _core.law_curves(law, parameters, where.tolist())
+    return LawCurve(law, where, {test: np.array(stress) for test, stress in found.items()})
 
 
 __all__ = [

@@ -347,7 +347,7 @@ def test_facets_of_four_nodes_are_cut_as_cells_are(order):
         with pytest.raises(ValueError, match=f"names node {node}, which no element uses"):
             em.Scene(nodes, cells, resultants=[em.Resultant([1, 0, 0], [node], 1)])
     inside = [at(corner) for corner in ([1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 0, 1])]
-    with pytest.raises(ValueError, match="is no(t a)? face"):
+    with pytest.raises(ValueError, match="is not a face" if order == 1 else "is no face"):
         em.Scene(nodes, cells, loads=[em.Traction([8, 0, 0], [inside])])
 
 
