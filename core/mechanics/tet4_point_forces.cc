@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "elastimate/core/large_strain/point_math-inl.h"
+#include "elastimate/core/mechanics/vector_lanes-inl.h"
 
 #ifndef ELASTIMATE_CORE_CORNER_ROWS_
 #define ELASTIMATE_CORE_CORNER_ROWS_
@@ -29,20 +30,45 @@ namespace elastimate {
 namespace HWY_NAMESPACE {
 namespace {
 
+// Returns a value of a corner of each element.
+HWY_INLINE void GatherCorner(const CornerRows& rows, int corner, int p,
+                             const double* values, Number (&of_corner)[3]) {
+  const std::int64_t* const row = rows[corner] + p;
+#if ELASTIMATE_HAS_BATCHES
+  const auto load = [&](int k) HWY_ATTR {
+#if HWY_CAP_GE512
+    const hn::Half<Lanes> half;
+    return hn::Combine(Lanes(), LoadThree(half, values + row[k + 4]),
+                       LoadThree(half, values + row[k]));
+#else
+    return LoadThree(Lanes(), values + row[k]);
+#endif
+  };
+  const Rows components = Transpose({load(0), load(1), load(2), load(3)});
+  of_corner[0] = components.row0;
+  of_corner[1] = components.row1;
+  of_corner[2] = components.row2;
+#else
+  const hn::RebindToSigned<PointLanes> integers;
+  for (int i = 0; i < 3; ++i) {
+    of_corner[i] =
+        hn::GatherIndex(PointLanes(), values + i, hn::Load(integers, row));
+  }
+#endif
+}
+
 // Returns the values of the corners 1, 2 and 3 as columns, less those of corner
 // 0.
 HWY_INLINE Matrix3 EdgesAt(const CornerRows& rows, int p,
                            const double* values) {
-  const hn::RebindToSigned<PointLanes> integers;
-  const auto gather = [&](int corner, int component) HWY_ATTR {
-    return Number(hn::GatherIndex(PointLanes(), values + component,
-                                  hn::Load(integers, rows[corner] + p)));
-  };
+  Number origin[3];
+  GatherCorner(rows, 0, p, values, origin);
   Matrix3 edges;
-  for (int i = 0; i < 3; ++i) {
-    const Number origin = gather(0, i);
-    for (int corner = 1; corner < 4; ++corner) {
-      edges(i, corner - 1) = gather(corner, i) - origin;
+  for (int corner = 1; corner < 4; ++corner) {
+    Number of_corner[3];
+    GatherCorner(rows, corner, p, values, of_corner);
+    for (int i = 0; i < 3; ++i) {
+      edges(i, corner - 1) = of_corner[i] - origin[i];
     }
   }
   return edges;
@@ -77,29 +103,61 @@ void SetFieldGradients(const CornerRows& rows, int count,
   }
 }
 
+// Adds forces to a corner of each of `count` elements, one after the other
+// because they may share nodes.
+HWY_INLINE void AddToCorner(const std::int64_t* row, int count, Number x,
+                            Number y, Number z, double* forces) {
+#if ELASTIMATE_HAS_BATCHES
+  if (count >= int(kLanes)) {
+    const Rows of = Transpose({x.value, y.value, z.value, hn::Zero(Lanes())});
+#if HWY_CAP_GE512
+    const hn::Half<Lanes> half;
+    CollectThree<false>(hn::LowerHalf(half, of.row0), forces + row[0]);
+    CollectThree<false>(hn::LowerHalf(half, of.row1), forces + row[1]);
+    CollectThree<false>(hn::LowerHalf(half, of.row2), forces + row[2]);
+    CollectThree<false>(hn::LowerHalf(half, of.row3), forces + row[3]);
+    CollectThree<false>(hn::UpperHalf(half, of.row0), forces + row[4]);
+    CollectThree<false>(hn::UpperHalf(half, of.row1), forces + row[5]);
+    CollectThree<false>(hn::UpperHalf(half, of.row2), forces + row[6]);
+    CollectThree<false>(hn::UpperHalf(half, of.row3), forces + row[7]);
+#else
+    CollectThree<false>(of.row0, forces + row[0]);
+    CollectThree<false>(of.row1, forces + row[1]);
+    CollectThree<false>(of.row2, forces + row[2]);
+    CollectThree<false>(of.row3, forces + row[3]);
+#endif
+    return;
+  }
+#endif
+  constexpr int kPointLanes = int(hn::MaxLanes(PointLanes()));
+  alignas(64) double of_lane[3][kPointLanes];
+  StoreNumber(x, of_lane[0]);
+  StoreNumber(y, of_lane[1]);
+  StoreNumber(z, of_lane[2]);
+  for (int lane = 0; lane < kPointLanes && lane < count; ++lane) {
+    for (int i = 0; i < 3; ++i) {
+      forces[row[lane] + i] += of_lane[i][lane];
+    }
+  }
+}
+
 void AddCornerForces(const CornerRows& rows, int count,
                      const PointMatrices& shape_gradients,
                      const PointValues<1>& volumes,
                      const PointMatrices& stresses, double* forces) {
-  constexpr int kLanes = int(hn::MaxLanes(PointLanes()));
-  alignas(64) double of_corners[9][kLanes];
   for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
     const Matrix3 acting =
         LoadNumber(volumes.row[0] + p) *
         Product(LoadMatrix(stresses, p), LoadMatrix(shape_gradients, p));
-    for (int i = 0; i < 9; ++i) {
-      StoreNumber(acting.entry[i], of_corners[i]);
+    Number of_origin[3];
+    for (int i = 0; i < 3; ++i) {
+      of_origin[i] = Number(0) - (acting(i, 0) + acting(i, 1) + acting(i, 2));
     }
-    for (int lane = 0; lane < kLanes && p + lane < count; ++lane) {
-      double* const origin = forces + rows[0][p + lane];
-      for (int corner = 0; corner < 3; ++corner) {
-        double* const at = forces + rows[corner + 1][p + lane];
-        for (int i = 0; i < 3; ++i) {
-          const double force = of_corners[3 * corner + i][lane];
-          at[i] += force;
-          origin[i] -= force;
-        }
-      }
+    AddToCorner(rows[0] + p, count - p, of_origin[0], of_origin[1],
+                of_origin[2], forces);
+    for (int corner = 0; corner < 3; ++corner) {
+      AddToCorner(rows[corner + 1] + p, count - p, acting(0, corner),
+                  acting(1, corner), acting(2, corner), forces);
     }
   }
 }

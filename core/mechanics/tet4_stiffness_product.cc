@@ -401,14 +401,6 @@ HWY_INLINE void CollectNode(const double* record, const Columns&, double* h,
 
 #if ELASTIMATE_HAS_BATCHES
 
-// Loads the three values of a node in a column, and a fourth on which nothing
-// depends.
-template <class D>
-HWY_INLINE hn::Vec<D> LoadThree(D d, const double* p) {
-  const hn::Half<D> two;
-  return hn::Combine(d, hn::Set(two, p[2]), hn::LoadU(two, p));
-}
-
 // Fills a column in each lane; lanes beyond the last column repeat it.
 HWY_INLINE void FillDisplacement(const double* q, const Columns& columns,
                                  double* record, SeveralColumns layout) {
@@ -427,16 +419,6 @@ HWY_INLINE void FillDisplacement(const double* q, const Columns& columns,
   const Rows components = Transpose({row(0), row(1), row(2), row(3)});
   StoreColumns({components.row0, components.row1, components.row2},
                record + layout.kDisplacement);
-}
-
-// Sets three values of a column to the first three of `v`, or adds these.
-template <bool kIsFirst, class V>
-HWY_INLINE void CollectThree(V v, double* p) {
-  const hn::Half<hn::DFromV<V>> two;
-  const auto low = hn::LowerHalf(two, v);
-  const double last = hn::GetLane(hn::UpperHalf(two, v));
-  hn::StoreU(kIsFirst ? low : hn::Add(hn::LoadU(two, p), low), two, p);
-  p[2] = kIsFirst ? last : p[2] + last;
 }
 
 // The first four lanes of row k belong to column k, the next to column k + 4.

@@ -93,6 +93,23 @@ HWY_INLINE Rows Transpose(const Rows& in) {
           UpperPairs(low23, low01), UpperPairs(high23, high01)};
 }
 
+// Loads three values, and a fourth on which nothing depends.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadThree(D d, const double* p) {
+  const hn::Half<D> two;
+  return hn::Combine(d, hn::Set(two, p[2]), hn::LoadU(two, p));
+}
+
+// Sets three values to the first three of `v`, or adds these.
+template <bool kIsFirst, class V>
+HWY_INLINE void CollectThree(V v, double* p) {
+  const hn::Half<hn::DFromV<V>> two;
+  const auto low = hn::LowerHalf(two, v);
+  const double last = hn::GetLane(hn::UpperHalf(two, v));
+  hn::StoreU(kIsFirst ? low : hn::Add(hn::LoadU(two, p), low), two, p);
+  p[2] = kIsFirst ? last : p[2] + last;
+}
+
 // Returns the four values at `offset` in the records of the nodes in lane `row`
 // and, in vectors of eight, in lane `row` + 4.
 template <class Value>

@@ -255,7 +255,9 @@ Eigen::VectorXd TurnOfBar(int dimension, double angle) {
   if (dimension == 2) {
     return Eigen::Vector3d(0.3, -0.2, -angle);
   }
-  return (Eigen::VectorXd(6) << 0.3, -0.2, 0.1, 0, angle, 0).finished();
+  Eigen::VectorXd turn(6);
+  turn << 0.3, -0.2, 0.1, 0, angle, 0;
+  return turn;
 }
 
 constexpr double kThirtyDegrees = 0.5236;
