@@ -1,5 +1,7 @@
 #include "elastimate/core/solvers/algebraic_multigrid.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "elastimate/core/solvers/free_memory.h"
@@ -8,6 +10,10 @@ namespace elastimate {
 namespace {
 
 constexpr int kMostIterations = 500;
+// With the spaces of another matrix, new ones are sooner found than so many
+// iterations done, and are worth it where iterations are so much slower.
+constexpr int kMostIterationsOfOthers = 100;
+constexpr double kMostSlowdown = 3;
 
 // Aggregates of few nodes leave coarse spaces modes without energy.
 constexpr double kShift = 1e-6;
@@ -43,22 +49,55 @@ Eigen::SparseMatrix<double> Sparse(const BlockMatrix& a) {
 
 }  // namespace
 
-AlgebraicMultigrid::AlgebraicMultigrid(FindSpaces find_spaces)
-    : find_spaces_(std::move(find_spaces)) {}
+AlgebraicMultigrid::AlgebraicMultigrid(NodeBlocks blocks,
+                                       FindSpaces find_spaces)
+    : blocks_(std::move(blocks)),
+      row_of_free_(blocks_.RowsOfFree()),
+      find_spaces_(std::move(find_spaces)) {}
 
 bool AlgebraicMultigrid::Factorize(const Eigen::VectorXd& values) {
+  values_ = &values;
+  if (!values.allFinite()) {
+    return false;
+  }
+  are_spaces_of_matrix_ = false;
+  return are_spaces_slow_ ? SetUp() : TakeFinest();
+}
+
+bool AlgebraicMultigrid::SetUp() {
   cycle_.clear();
   restrictions_.clear();
   spaces_ = {};  // Its memory is needed.
-  smallest_eigenvalue_ = 1;
-  const bool is_set_up = values.allFinite() && find_spaces_(values, spaces_) &&
-                         FactorizeCoarsest() && SetUpCycle();
+  finest_ = {};
+  ++num_set_ups_;
+  are_spaces_slow_ = true;  // Unless all goes well.
+  if (!find_spaces_(*values_, spaces_)) {
+    return false;
+  }
   ReturnFreeMemory();
-  return is_set_up;
+  for (const BlockMatrix& interpolation : spaces_.interpolations) {
+    restrictions_.push_back(Transposed(interpolation));
+  }
+  for (std::size_t i = 1; i < spaces_.matrices.size(); ++i) {
+    if (!AddSpace(spaces_.matrices[i], i - 1)) {
+      return false;
+    }
+  }
+  diagonal_of_spaces_ = 0;
+  if ((!spaces_.matrices.empty() && !FactorizeCoarsest()) || !TakeFinest()) {
+    return false;
+  }
+  ReturnFreeMemory();
+  are_spaces_of_matrix_ = true;
+  are_spaces_slow_ = false;
+  iterations_per_digit_ = 0;
+  smallest_eigenvalue_ = 1;
+  return true;
 }
 
 bool AlgebraicMultigrid::FactorizeCoarsest() {
-  Eigen::SparseMatrix<double> matrix = Sparse(spaces_.matrices.front());
+  Eigen::SparseMatrix<double> matrix =
+      Sparse(spaces_.matrices.empty() ? finest_ : spaces_.matrices.front());
   const Eigen::VectorXd diagonal = matrix.diagonal();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     matrix.coeffRef(i, i) += diagonal(i) > 0 ? kShift * diagonal(i) : 1;
@@ -68,52 +107,72 @@ bool AlgebraicMultigrid::FactorizeCoarsest() {
          (coarsest_.vectorD().array() > 0).all();
 }
 
-bool AlgebraicMultigrid::SetUpCycle() {
-  for (const BlockMatrix& interpolation : spaces_.interpolations) {
-    restrictions_.push_back(Transposed(interpolation));
+// Adds the space of a matrix to the cycle, above a coarser one.
+bool AlgebraicMultigrid::AddSpace(const BlockMatrix& matrix,
+                                  std::size_t coarser) {
+  const bool is_finest = &matrix == &finest_;
+  CycleSpace& space = cycle_.emplace_back();
+  space.multiply = [&matrix](const Eigen::MatrixXd& x) {
+    return Multiply(matrix, x);
+  };
+  space.restrict = [&to = restrictions_[coarser]](const Eigen::MatrixXd& x) {
+    return Multiply(to, x);
+  };
+  space.interpolate = [this, is_finest,
+                       coarser](const Eigen::MatrixXd& x) -> Eigen::MatrixXd {
+    const BlockMatrix& from = spaces_.interpolations[coarser];
+    return is_finest ? Multiply(from, x / scale_) : Multiply(from, x);
+  };
+  const Eigen::MatrixXd blocks = DiagonalBlocks(matrix);
+  const Eigen::RowVectorXd diagonal = DiagonalOf(blocks);
+  if (is_finest) {
+    diagonal_of_spaces_ =
+        diagonal_of_spaces_ > 0 ? diagonal_of_spaces_ : diagonal.sum();
+    scale_ = diagonal.sum() / diagonal_of_spaces_;
   }
-  const std::size_t num_spaces = spaces_.matrices.size();
-  for (std::size_t i = 1; i < num_spaces; ++i) {
-    const BlockMatrix& matrix = spaces_.matrices[i];
-    CycleSpace& space = cycle_.emplace_back();
-    space.multiply = [&matrix](const Eigen::MatrixXd& x) {
-      return Multiply(matrix, x);
-    };
-    space.restrict = [&to = restrictions_[i - 1]](const Eigen::MatrixXd& x) {
-      return Multiply(to, x);
-    };
-    space.interpolate =
-        [&from = spaces_.interpolations[i - 1]](const Eigen::MatrixXd& x) {
-          return Multiply(from, x);
-        };
-    const Eigen::MatrixXd blocks = DiagonalBlocks(matrix);
-    const Eigen::RowVectorXd diagonal = DiagonalOf(blocks);
-    // Blocks of coarse spaces may be singular, as their modes may be.
-    space.inverse_blocks = InverseBlocks(
-        i + 1 == num_spaces ? blocks : Eigen::MatrixXd(diagonal),
-        (diagonal.array() > 0).cast<double>().matrix().transpose());
-    int num_products = 0;
-    space.largest_eigenvalue =
-        LargestEigenvalue(space.multiply, space.inverse_blocks, num_products);
-    if (!(space.largest_eigenvalue > 0)) {
-      return false;
-    }
+  // Blocks of coarse spaces may be singular, as their modes may be.
+  space.inverse_blocks =
+      InverseBlocks(is_finest ? blocks : Eigen::MatrixXd(diagonal),
+                    (diagonal.array() > 0).cast<double>().matrix().transpose());
+  int num_products = 0;
+  space.largest_eigenvalue =
+      LargestEigenvalue(space.multiply, space.inverse_blocks, num_products);
+  return space.largest_eigenvalue > 0;
+}
+
+// Takes the present matrix for the finest space.
+bool AlgebraicMultigrid::TakeFinest() {
+  finest_ = {};  // Its memory is needed.
+  finest_ = blocks_.MatrixOf(*values_);
+  if (spaces_.matrices.empty()) {
+    return FactorizeCoarsest();
   }
-  return true;
+  cycle_.resize(spaces_.matrices.size() - 1);
+  return AddSpace(finest_, spaces_.matrices.size() - 1);
 }
 
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
     const Eigen::MatrixXd& right_hand_sides, double tolerance) {
-  const BlockMatrix& finest = spaces_.matrices.back();
+  std::optional<Eigen::MatrixXd> solution =
+      SolveOnce(right_hand_sides, tolerance);
+  if (!solution && !are_spaces_of_matrix_ && SetUp()) {
+    solution = SolveOnce(right_hand_sides, tolerance);
+  }
+  return solution;
+}
+
+std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
+    const Eigen::MatrixXd& right_hand_sides, double tolerance) {
   Eigen::MatrixXd forces =
-      Eigen::MatrixXd::Zero(finest.NumRows(), right_hand_sides.cols());
-  forces(spaces_.row_of_free, Eigen::all) = right_hand_sides;
+      Eigen::MatrixXd::Zero(finest_.NumRows(), right_hand_sides.cols());
+  forces(row_of_free_, Eigen::all) = right_hand_sides;
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
-  options.most_iterations = kMostIterations;
+  options.most_iterations =
+      are_spaces_of_matrix_ ? kMostIterations : kMostIterationsOfOthers;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   const ConjugateGradientResult result = SolveByConjugateGradients(
-      [&](const Eigen::MatrixXd& x) { return MultiplyAccurately(finest, x); },
+      [&](const Eigen::MatrixXd& x) { return MultiplyAccurately(finest_, x); },
       [&](const Eigen::MatrixXd& x) {
         return VCycle(
             cycle_,
@@ -125,10 +184,19 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
       forces, {}, options);
   num_iterations_ += result.iterations;
   if (!result.has_converged) {
+    are_spaces_slow_ = true;
     return std::nullopt;
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
-  return result.solution(spaces_.row_of_free, Eigen::all);
+  const double per_digit =
+      result.iterations /
+      (double(right_hand_sides.cols()) * -std::log10(tolerance));
+  if (are_spaces_of_matrix_) {
+    iterations_per_digit_ = std::max(iterations_per_digit_, per_digit);
+  } else if (per_digit > kMostSlowdown * iterations_per_digit_) {
+    are_spaces_slow_ = true;
+  }
+  return result.solution(row_of_free_, Eigen::all);
 }
 
 }  // namespace elastimate

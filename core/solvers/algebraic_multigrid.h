@@ -10,6 +10,7 @@
 
 #include "elastimate/core/solvers/linear_solver.h"
 #include "elastimate/core/solvers/multigrid_spaces.h"
+#include "elastimate/core/solvers/node_blocks.h"
 #include "elastimate/core/solvers/v_cycle.h"
 
 namespace elastimate {
@@ -17,6 +18,10 @@ namespace elastimate {
 /// Conjugate gradients, preconditioned by a V-cycle over algebraic coarse
 /// spaces.  Time and memory grow linearly with the number of nodes; the number
 /// of iterations grows as nu nears 1/2, and with bad elements.
+///
+/// The spaces of one matrix serve the next ones as well, in proportion to their
+/// diagonals, until iterations become slow: to find them takes as long as a
+/// hundred iterations.
 ///
 /// The products of an iteration take the cores there are, by OpenMP, and so do
 /// not those that an outer parallel region shares.
@@ -27,26 +32,42 @@ class AlgebraicMultigrid : public LinearSolver {
   using FindSpaces =
       std::function<bool(const Eigen::VectorXd& values, MultigridSpaces&)>;
 
-  explicit AlgebraicMultigrid(FindSpaces find_spaces);
+  AlgebraicMultigrid(NodeBlocks blocks, FindSpaces find_spaces);
 
   bool Factorize(const Eigen::VectorXd& values) override;
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
                                        double tolerance) override;
   int NumIterations() const override { return num_iterations_; }
+  int NumSetUps() const override { return num_set_ups_; }
 
  private:
-  bool SetUpCycle();
+  bool SetUp();
   bool FactorizeCoarsest();
+  bool AddSpace(const BlockMatrix& matrix, std::size_t coarser);
+  bool TakeFinest();
+  std::optional<Eigen::MatrixXd> SolveOnce(
+      const Eigen::MatrixXd& right_hand_sides, double tolerance);
 
+  NodeBlocks blocks_;
+  std::vector<int> row_of_free_;
   FindSpaces find_spaces_;
+  const Eigen::VectorXd* values_ = nullptr;
   MultigridSpaces spaces_;
+  BlockMatrix finest_;
   std::vector<BlockMatrix> restrictions_;  ///< The interpolations, transposed.
   std::vector<CycleSpace> cycle_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;
+  bool are_spaces_of_matrix_ = false;
+  bool are_spaces_slow_ = true;
+  double diagonal_of_spaces_ = 0;  ///< Of the matrix that the spaces are of.
+  double scale_ = 1;               ///< The present diagonal over that one.
+  /// Iterations for each digit and column with spaces of the same matrix.
+  double iterations_per_digit_ = 0;
   /// The smallest eigenvalue of the preconditioned matrix that any solution
   /// met so far.
   double smallest_eigenvalue_ = 1;
   int num_iterations_ = 0;
+  int num_set_ups_ = 0;
 };
 
 }  // namespace elastimate

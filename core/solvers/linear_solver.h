@@ -33,6 +33,8 @@ class LinearSolver {
 
   /// Returns the iterations of all columns until now; 0 for a direct solver.
   virtual int NumIterations() const { return 0; }
+  /// Returns how often coarse spaces were set up; 0 for a direct solver.
+  virtual int NumSetUps() const { return 0; }
 };
 
 }  // namespace elastimate

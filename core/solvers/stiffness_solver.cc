@@ -82,8 +82,10 @@ bool StiffnessSolver::FactorizeBlocks(const Eigen::MatrixXd& blocks) {
 
 bool StiffnessSolver::FactorizeValues() {
   if (is_multigrid_) {
-    ++work_.multigrid_set_ups;
-    if (solver_->Factorize(values_)) {
+    const int set_ups_before = solver_->NumSetUps();
+    const bool is_set_up = solver_->Factorize(values_);
+    work_.multigrid_set_ups += solver_->NumSetUps() - set_ups_before;
+    if (is_set_up) {
       return true;
     }
     FallBackToCholesky("could not be set up");
@@ -104,9 +106,11 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
   work_.solves += static_cast<int>(all.cols());
   const Eigen::MatrixXd right_hand_sides = degrees_of_freedom_.Restrict(all);
   const int iterations_before = solver_->NumIterations();
+  const int set_ups_before = solver_->NumSetUps();
   std::optional<Eigen::MatrixXd> solution =
       solver_->Solve(right_hand_sides, tolerance);
   work_.iterations += solver_->NumIterations() - iterations_before;
+  work_.multigrid_set_ups += solver_->NumSetUps() - set_ups_before;
   if (!solution && is_multigrid_) {
     std::ostringstream why;
     why.precision(10);
