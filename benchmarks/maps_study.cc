@@ -111,7 +111,7 @@ class MapRun {
     return FitRegions(problem_, prior_, sharpened, *homogeneous_);
   }
   Eigen::VectorXd Lengths() const {
-    return ResolutionLengths(prior_, *smooth_);
+    return ResolutionLengths(problem_, prior_, *smooth_);
   }
 
  private:

@@ -16,6 +16,9 @@ constexpr Eigen::Index kFirstModes = 64;
 // Each of three matrices has at most so many entries, which take 1 GB in all.
 constexpr double kMostModeEntries = 4e7;
 constexpr Eigen::Index kProbes = 8;
+// Beside the modes k lambda is small, or some tens where memory bounds them, so
+// that 20 steps give sums to a per cent.
+constexpr int kLanczosSteps = 20;
 
 // Returns orthonormal columns up to rounding times the square of the condition
 // of those given, which is small for random ones.  A second time mends that.
@@ -47,18 +50,24 @@ void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
     products_.conservativeResize(Eigen::NoChange, old + more);
     basis_.rightCols(more) = columns;
     products_.rightCols(more) = multiply(columns);
-    Decompose(multiply);
+    Decompose();
+    rest_.reset();
+  }
+  if (!rest_) {
+    MeasureRest(multiply);
   }
 }
 
 void CurvatureModes::Renew(const ColumnOperator& multiply) {
   products_ = multiply(basis_);
-  Decompose(multiply);
+  Decompose();
+  MeasureRest(multiply);
 }
 
 CurvatureModes CurvatureModes::OfRoot(const Eigen::MatrixXd& g) {
   CurvatureModes modes(g.rows());
   modes.TakeModesOf(g, 0);
+  modes.SetAccurate(modes.Size());
   return modes;
 }
 
@@ -81,7 +90,7 @@ void CurvatureModes::TakeModesOf(const Eigen::MatrixXd& g, double shift) {
   vectors_.conservativeResize(Eigen::NoChange, kept);
 }
 
-void CurvatureModes::Decompose(const ColumnOperator& multiply) {
+void CurvatureModes::Decompose() {
   const Eigen::Index size = basis_.rows();
   // A small shift keeps the factor of the sketch definite.
   const double shift = std::sqrt(double(size)) *
@@ -96,30 +105,39 @@ void CurvatureModes::Decompose(const ColumnOperator& multiply) {
       of_sketch.values.cwiseMax(shift).cwiseSqrt().cwiseInverse().asDiagonal();
   const Eigen::MatrixXd columns = Product(products_ + shift * basis_, root);
   TakeModesOf(columns, shift);
-  const bool is_all = columns.cols() == size;
-  trace_left_ = 0;
-  if (!is_all) {
+}
+
+Eigen::MatrixXd CurvatureModes::WithoutModes(
+    const Eigen::MatrixXd& columns) const {
+  return columns - Product(Vectors(), ProductOfTransposed(Vectors(), columns));
+}
+
+LanczosSums CurvatureModes::BesideModes(const ColumnOperator& multiply,
+                                        const Eigen::MatrixXd& vectors) const {
+  return {[&](const Eigen::MatrixXd& columns) {
+            return WithoutModes(multiply(columns));
+          },
+          WithoutModes(vectors), kLanczosSteps};
+}
+
+void CurvatureModes::MeasureRest(const ColumnOperator& multiply) {
+  const Eigen::Index size = basis_.rows();
+  rest_.reset();
+  SetAccurate(basis_.cols() < size ? (Size() + 1) / 2 : Size());
+  if (basis_.cols() < size) {
     std::mt19937_64 generator(0);
-    Eigen::MatrixXd probes = StandardNormal(size, kProbes, generator);
-    probes -= Product(basis_, ProductOfTransposed(basis_, probes));
-    const double by_modes = (values_.cwiseSqrt().asDiagonal() *
-                             ProductOfTransposed(vectors_, probes))
-                                .squaredNorm();
-    // A mean over directions beside the basis is that of all of them there.
-    trace_left_ =
-        std::max(0.0, (probes.cwiseProduct(multiply(probes)).sum() - by_modes) /
-                          double(kProbes));
+    rest_ = BesideModes(multiply, StandardNormal(size, kProbes, generator));
   }
 }
 
 double CurvatureModes::LogDeterminant(double k) const {
-  return (k * values_.array()).log1p().sum() +
-         NumLeft() * std::log1p(k * LeastValue());
+  return (k * Values().array()).log1p().sum() +
+         SumOverRest([k](double value) { return std::log1p(k * value); });
 }
 
 double CurvatureModes::EffectiveNumber(double k) const {
-  return (k * values_.array() / (1 + k * values_.array())).sum() +
-         NumLeft() * k * LeastValue() / (1 + k * LeastValue());
+  return (k * Values().array() / (1 + k * Values().array())).sum() +
+         SumOverRest([k](double value) { return k * value / (1 + k * value); });
 }
 
 Eigen::MatrixXd CurvatureModes::Solve(double k,

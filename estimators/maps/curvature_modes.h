@@ -2,8 +2,10 @@
 #define ELASTIMATE_ESTIMATORS_MAPS_CURVATURE_MODES_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "elastimate/core/solvers/conjugate_gradients.h"
+#include "elastimate/estimators/maps/lanczos_sums.h"
 
 namespace elastimate {
 
@@ -14,32 +16,45 @@ namespace elastimate {
 ///
 /// from its products with random orthonormal columns (Nystroem's approximation
 /// [Frangella, Tropp & Udell, SIAM J. Matrix Anal. Appl. 44 (2023) 718]), and
-/// the trace of what that leaves out.  What 1 / k + H asks for follows from it:
-/// traces, a determinant, and a preconditioner by which conjugate gradients
-/// need a few iterations.
+/// LanczosSums of random vectors beside these modes.  What 1 / k + H asks for
+/// follows from both: traces, a determinant, and a preconditioner by which
+/// conjugate gradients need a few iterations.
 class CurvatureModes {
  public:
   /// Without modes: H ~ 0.
   explicit CurvatureModes(Eigen::Index size)
-      : basis_(size, 0), products_(size, 0), vectors_(size, 0), values_(0) {}
+      : basis_(size, 0),
+        products_(size, 0),
+        vectors_(size, 0),
+        values_(0),
+        accurate_vectors_(size, 0),
+        accurate_values_(0) {}
 
   /// Returns all modes of H = G G^T with n x r G.  O(n r^2).
   [[nodiscard]] static CurvatureModes OfRoot(const Eigen::MatrixXd& g);
 
   /// Enlarges the number of modes until the least lambda is below `least`, or
   /// there are all or as many as memory is for (1 GB).  `multiply` is H.  Costs
-  /// a product for each mode, many columns at once, and O(n r^2) for r modes.
+  /// a product for each mode and 160 for what is beside them, many columns at
+  /// once, and O(n r^2) for r modes.
   void AddUntil(double least, const ColumnOperator& multiply);
   /// Takes another H from now on, with as many modes.  Costs as above.
   void Renew(const ColumnOperator& multiply);
 
   Eigen::Index Size() const { return vectors_.cols(); }
-  const Eigen::MatrixXd& Vectors() const { return vectors_; }
+  /// The accurate modes: all, or the larger half where more are beside them.
+  /// Functions of H take these, and sums over what is beside them; the other
+  /// half serves as a preconditioner.
+  const Eigen::MatrixXd& Vectors() const { return accurate_vectors_; }
   /// Descending.
-  const Eigen::VectorXd& Values() const { return values_; }
+  const Eigen::VectorXd& Values() const { return accurate_values_; }
+  /// Whether nothing is beside the accurate modes.
+  bool HasAll() const { return !rest_; }
 
-  /// Returns ln det(I + k H), where the trace that the modes leave out counts
-  /// as that of further modes of the least lambda.
+  /// Returns v^T f(H) v of the parts of the vectors beside the accurate modes.
+  LanczosSums BesideModes(const ColumnOperator& multiply,
+                          const Eigen::MatrixXd& vectors) const;
+  /// Returns ln det(I + k H), to some per cent of what is beside the modes.
   double LogDeterminant(double k) const;
   /// Returns tr(k H (I + k H)^-1), likewise.
   double EffectiveNumber(double k) const;
@@ -52,20 +67,33 @@ class CurvatureModes {
                            const ConjugateGradientOptions& options) const;
 
  private:
-  void Decompose(const ColumnOperator& multiply);
+  void Decompose();
+  // Takes so many of the modes for accurate ones.
+  void SetAccurate(Eigen::Index number) {
+    accurate_vectors_ = vectors_.leftCols(number);
+    accurate_values_ = values_.head(number);
+  }
+  void MeasureRest(const ColumnOperator& multiply);
+  Eigen::MatrixXd WithoutModes(const Eigen::MatrixXd& columns) const;
   // Takes the modes of G G^T - shift.
   void TakeModesOf(const Eigen::MatrixXd& g, double shift);
-  double LeastValue() const { return values_(Size() - 1); }
-  /// How many modes of the least lambda have the trace that is left out.
-  double NumLeft() const {
-    return trace_left_ > 0 ? trace_left_ / LeastValue() : 0;
+  // Returns the sum of f over the eigenvalues beside the modes.
+  template <class Function>
+  double SumOverRest(const Function& f) const {
+    double sum = 0;
+    for (Eigen::Index i = 0; rest_ && i < rest_->NumVectors(); ++i) {
+      sum += rest_->Of(i, f) / double(rest_->NumVectors());
+    }
+    return sum;
   }
 
   Eigen::MatrixXd basis_;     ///< Random orthonormal columns.
   Eigen::MatrixXd products_;  ///< H times these.
   Eigen::MatrixXd vectors_;
   Eigen::VectorXd values_;
-  double trace_left_ = 0;
+  Eigen::MatrixXd accurate_vectors_;
+  Eigen::VectorXd accurate_values_;
+  std::optional<LanczosSums> rest_;  ///< None where all modes are there.
 };
 
 }  // namespace elastimate

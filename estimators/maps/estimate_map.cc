@@ -141,18 +141,18 @@ class MapBuilder {
     }
     of_mesh_ = mesh_error_ ? mesh_error_->SquareSum(*homogeneous) : 0;
     const SmoothMap smooth = FitSmooth(*homogeneous);
-    const MapState sharpened = SharpenMap(problem_, *prior_, smooth);
-    const std::optional<RegionMap> regions =
-        FitRegions(problem_, *prior_, sharpened, *homogeneous);
-    map_.field_log_evidence = smooth.log_evidence;
-    map_.region_log_evidence = regions ? regions->log_evidence : 0;
     // A field that explains less than one material does supports nothing.
     const bool is_supported = smooth.log_evidence > 0;
     map_.supported_parameters = is_supported ? smooth.effective_number : 0;
     map_.resolution_length =
         is_supported
-            ? ResolutionLengths(*prior_, smooth)
+            ? ResolutionLengths(problem_, *prior_, smooth)
             : Eigen::VectorXd::Constant(prior_->NumElements(), prior_->Size());
+    const MapState sharpened = SharpenMap(problem_, *prior_, smooth);
+    const std::optional<RegionMap> regions =
+        FitRegions(problem_, *prior_, sharpened, *homogeneous);
+    map_.field_log_evidence = smooth.log_evidence;
+    map_.region_log_evidence = regions ? regions->log_evidence : 0;
     const bool are_regions =
         regions && map_.region_log_evidence >= map_.field_log_evidence;
     const double best =

@@ -1,12 +1,9 @@
 #include "elastimate/estimators/maps/field_prior.h"
 
-#include <Eigen/CholmodSupport>
-#include <Eigen/SparseCore>
 #include <cmath>
-#include <utility>
 #include <vector>
 
-#include "elastimate/core/solvers/nested_dissection.h"
+#include "elastimate/estimators/maps/element_factor.h"
 
 namespace elastimate {
 namespace {
@@ -23,41 +20,6 @@ double MaternVariance(double kappa, int dimension) {
 }
 
 }  // namespace
-
-class FieldPrior::Factor {
- public:
-  explicit Factor(Eigen::SparseMatrix<double> m) : matrix_(std::move(m)) {
-    const Eigen::SparseMatrix<double> lower =
-        matrix_.triangularView<Eigen::Lower>();
-    const std::vector<std::int64_t> order = NestedDissection(
-        {lower.outerIndexPtr(), lower.outerIndexPtr() + lower.cols() + 1},
-        {lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros()});
-    order_.resize(matrix_.rows());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      order_.indices()(order[i]) = static_cast<int>(i);
-    }
-    inverse_.cholmod().nmethods = 1;
-    inverse_.cholmod().method[0].ordering = CHOLMOD_NATURAL;
-    inverse_.cholmod().postorder = 1;
-    Eigen::SparseMatrix<double> permuted;
-    permuted = matrix_.twistedBy(order_);
-    inverse_.compute(permuted);
-  }
-
-  const Eigen::SparseMatrix<double>& Matrix() const { return matrix_; }
-
-  // CHOLMOD prints an error where there are no columns.
-  Eigen::MatrixXd Solve(const Eigen::MatrixXd& b) const {
-    return b.cols() == 0 ? b
-                         : order_.transpose() *
-                               Eigen::MatrixXd(inverse_.solve(order_ * b));
-  }
-
- private:
-  Eigen::SparseMatrix<double> matrix_;
-  Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< From rows to places.
-  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> inverse_;
-};
 
 FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
     : dimension_(mesh.Dimension()),
@@ -87,9 +49,9 @@ FieldPrior::FieldPrior(const Mesh& mesh, double relative_length)
     entries.emplace_back(a, b, -coefficient);
     entries.emplace_back(b, a, -coefficient);
   }
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_ = std::make_unique<Factor>(std::move(matrix));
+  matrix_.resize(n, n);
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  factor_ = std::make_unique<ElementFactor>(matrix_);
 }
 
 FieldPrior::~FieldPrior() = default;
@@ -103,13 +65,12 @@ Eigen::MatrixXd FieldPrior::ApplyTransposed(const Eigen::MatrixXd& x) const {
 }
 
 Eigen::MatrixXd FieldPrior::ApplyInverse(const Eigen::MatrixXd& x) const {
-  return scale_.cwiseInverse().asDiagonal() *
-         Eigen::MatrixXd(factor_->Matrix() * x);
+  return scale_.cwiseInverse().asDiagonal() * Eigen::MatrixXd(matrix_ * x);
 }
 
 Eigen::MatrixXd FieldPrior::ApplyInverseTransposed(
     const Eigen::MatrixXd& y) const {
-  return factor_->Matrix() * (scale_.cwiseInverse().asDiagonal() * y);
+  return matrix_ * (scale_.cwiseInverse().asDiagonal() * y);
 }
 
 }  // namespace elastimate

@@ -2,12 +2,15 @@
 #define ELASTIMATE_ESTIMATORS_MAPS_FIELD_PRIOR_H_
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <memory>
 
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate {
+
+class ElementFactor;
 
 /// What is believed of a field of one value per element before anything is
 /// measured: it is smooth over a length rho, and deviates from its level by a
@@ -59,14 +62,13 @@ class FieldPrior {
   Eigen::MatrixXd ApplyInverseTransposed(const Eigen::MatrixXd& y) const;
 
  private:
-  class Factor;
-
   int dimension_;
   double size_;
   Eigen::VectorXd volumes_;
   ElementFacets facets_;
-  Eigen::VectorXd scale_;  ///< (V_e / v)^(1/2).
-  std::unique_ptr<Factor> factor_;
+  Eigen::VectorXd scale_;               ///< (V_e / v)^(1/2).
+  Eigen::SparseMatrix<double> matrix_;  ///< M.
+  std::unique_ptr<ElementFactor> factor_;
 };
 
 }  // namespace elastimate

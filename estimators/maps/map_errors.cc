@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/estimators/maps/random_columns.h"
 
 namespace elastimate {
@@ -13,6 +14,59 @@ constexpr Eigen::Index kDraws = 64;
 // The square of this is the error of a draw in the norm of the posterior,
 // relative to the number of its unknowns.
 constexpr double kAccurateDraws = 0.1;
+
+// Returns k lambda / (1 + k lambda) of each mode.
+Eigen::VectorXd SharesOfModes(const SmoothMap& map) {
+  const Eigen::ArrayXd scaled = map.ratio * map.modes.Values().array();
+  return scaled / (1 + scaled);
+}
+
+// Returns numbers of elements after each has become the mean of itself and its
+// neighbours, weighted by their volumes, some times over.
+Eigen::VectorXd Smoothed(const FieldPrior& prior, Eigen::VectorXd of_elements,
+                         int num_times) {
+  for (int i = 0; i < num_times; ++i) {
+    Eigen::VectorXd volumes = prior.Volumes();
+    Eigen::VectorXd sums = of_elements;
+    for (const auto& sides : prior.Facets().elements.colwise()) {
+      for (const int side : {0, 1}) {
+        if (sides(1) >= 0) {
+          volumes(sides(side)) += prior.Volumes()(sides(1 - side));
+          sums(sides(side)) += of_elements(sides(1 - side));
+        }
+      }
+    }
+    of_elements = prior.Volumes().cwiseProduct(sums.cwiseQuotient(volumes));
+  }
+  return of_elements;
+}
+
+// Returns the diagonal of the part of R that is beside the modes.
+Eigen::VectorXd ResolvedBesideModes(const MapProblem& problem,
+                                    const FieldPrior& prior,
+                                    const SmoothMap& map) {
+  constexpr int kNumTimes = 4;
+  const FlatUnknowns unknowns(problem, map.state,
+                              Eigen::MatrixXd::Ones(prior.NumElements(), 1));
+  const ColumnOperator curvature = [&](const Eigen::MatrixXd& y) {
+    return MultiplyByCurvature(problem, prior, unknowns, y);
+  };
+  std::mt19937_64 generator(1);
+  const Eigen::MatrixXd signs =
+      StandardNormal(prior.NumElements(), kDraws, generator)
+          .unaryExpr([](double x) { return x < 0 ? -1.0 : 1.0; });
+  const Eigen::MatrixXd y = prior.ApplyInverse(signs);
+  ConjugateGradientOptions options;
+  options.tolerance = kAccurateDraws;
+  const Eigen::MatrixXd& modes = map.modes.Vectors();
+  const Eigen::MatrixXd beside =
+      map.modes.SolveFor(map.ratio, curvature, curvature(y), options) -
+      Product(modes,
+              SharesOfModes(map).asDiagonal() * ProductOfTransposed(modes, y));
+  return Smoothed(prior,
+                  signs.cwiseProduct(prior.Apply(beside)).rowwise().mean(),
+                  kNumTimes);
+}
 
 }  // namespace
 
@@ -68,14 +122,16 @@ MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
   return errors;
 }
 
-Eigen::VectorXd ResolutionLengths(const FieldPrior& prior,
+Eigen::VectorXd ResolutionLengths(const MapProblem& problem,
+                                  const FieldPrior& prior,
                                   const SmoothMap& map) {
-  const Eigen::VectorXd share = map.ratio * map.modes.Values().array() /
-                                (1 + map.ratio * map.modes.Values().array());
-  const Eigen::VectorXd resolved =
+  Eigen::VectorXd resolved =
       prior.Apply(map.modes.Vectors())
           .cwiseProduct(prior.ApplyInverseTransposed(map.modes.Vectors())) *
-      share;
+      SharesOfModes(map);
+  if (!map.modes.HasAll()) {
+    resolved += ResolvedBesideModes(problem, prior, map);
+  }
   const double root = 1.0 / prior.Dimension();
   Eigen::VectorXd lengths(prior.NumElements());
   for (Eigen::Index e = 0; e < lengths.size(); ++e) {

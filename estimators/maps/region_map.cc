@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <set>
 #include <utility>
 
 #include "elastimate/estimators/misfit/displacement_misfit.h"
@@ -14,6 +14,13 @@ namespace {
 
 constexpr Eigen::Index kMostRegions = 3;
 constexpr int kMostRegionRounds = 15;
+// So many responses are kept at a time, which bounds their memory, and so many
+// solved for together.
+constexpr std::size_t kMostMoves = 2000;
+constexpr std::size_t kColumns = 64;
+// Elements that would have to pay so much, in -ln of the posterior, stay where
+// they are with a probability of 99.8 %.
+constexpr double kUnlikely = 6;
 
 // Means of values with weights, ascending, from quantiles on (Lloyd).
 Eigen::VectorXd ClusterMeans(const Eigen::VectorXd& values,
@@ -42,28 +49,42 @@ struct RegionMove {
   double cost;
 };
 
+void SortByCost(std::vector<RegionMove>& moves) {
+  std::sort(moves.begin(), moves.end(),
+            [](const RegionMove& a, const RegionMove& b) {
+              return std::make_pair(a.cost, a.element) <
+                     std::make_pair(b.cost, b.element);
+            });
+}
+
+// Returns the elements beside each element.
+std::vector<std::vector<int>> NeighboursOf(const ElementFacets& facets,
+                                           Eigen::Index num_elements) {
+  std::vector<std::vector<int>> neighbours(num_elements);
+  for (const auto& sides : facets.elements.colwise()) {
+    if (sides(1) >= 0) {
+      neighbours[sides(0)].push_back(sides(1));
+      neighbours[sides(1)].push_back(sides(0));
+    }
+  }
+  return neighbours;
+}
+
 class RegionSearch {
  public:
   RegionSearch(const MapProblem& problem, const FieldPrior& prior,
                std::vector<int> regions, LevelFit fit)
       : problem_(problem),
-        facets_(prior.Facets()),
+        neighbours_(NeighboursOf(prior.Facets(), prior.NumElements())),
         regions_(std::move(regions)),
         fit_(std::move(fit)) {}
 
   void Improve() {
     for (int round = 0; round < kMostRegionRounds; ++round) {
-      std::vector<RegionMove> moves = Moves();
-      moves.erase(
-          std::remove_if(moves.begin(), moves.end(),
-                         [](const RegionMove& move) { return move.cost >= 0; }),
-          moves.end());
-      // The model is linearised and moves act on each other, so fewer of them
-      // may do where all of them do not.
-      while (!moves.empty() && !Take(moves)) {
-        moves.resize(moves.size() / 2);
-      }
-      if (moves.empty()) {
+      const std::vector<RegionMove> moves = PromisingMoves(0);
+      // Moves that each gain alone, more than gain together, may do where the
+      // linearised model is far off.
+      if (!TakeSome(JointMoves(moves)) && !TakeSome(SingleMoves(moves))) {
         return;
       }
     }
@@ -89,11 +110,13 @@ class RegionSearch {
   double Noise() const { return std::sqrt(Variance()); }
 
   Eigen::Index NumFacetsBetween(const std::vector<int>& regions) const {
-    Eigen::Index count = 0;
-    for (const auto& sides : facets_.elements.colwise()) {
-      count += sides(1) >= 0 && regions[sides(0)] != regions[sides(1)] ? 1 : 0;
+    Eigen::Index twice = 0;
+    for (std::size_t e = 0; e < regions.size(); ++e) {
+      for (const int other : neighbours_[e]) {
+        twice += regions[e] != regions[other] ? 1 : 0;
+      }
     }
-    return count;
+    return twice / 2;
   }
 
   double CriterionOf(const std::vector<int>& regions,
@@ -107,86 +130,157 @@ class RegionSearch {
            2 * double(NumFacetsBetween(regions));
   }
 
-  // Returns the change of the number of facets between regions.
-  std::vector<RegionMove> Neighbours() const {
-    const Eigen::Index num_regions = fit_.levels.size();
-    std::vector<std::vector<int>> counts(
-        regions_.size(), std::vector<int>(std::size_t(num_regions), 0));
-    for (const auto& sides : facets_.elements.colwise()) {
-      if (sides(1) >= 0) {
-        ++counts[sides(0)][regions_[sides(1)]];
-        ++counts[sides(1)][regions_[sides(0)]];
-      }
+  // Returns by how many facets the boundaries grow where an element moves.
+  double GrowthOf(const RegionMove& move,
+                  const std::vector<int>& regions) const {
+    double growth = 0;
+    for (const int other : neighbours_[move.element]) {
+      growth += regions[other] == regions[move.element] ? 1 : 0;
+      growth -= regions[other] == move.region ? 1 : 0;
     }
-    std::vector<RegionMove> moves;
-    for (std::size_t e = 0; e < regions_.size(); ++e) {
-      for (int region = 0; region < num_regions; ++region) {
-        if (region != regions_[e] && counts[e][region] > 0) {
-          moves.push_back({int(e), region,
-                           double(counts[e][regions_[e]] - counts[e][region])});
-        }
-      }
-    }
-    return moves;
+    return growth;
   }
 
-  // Returns the possible moves, the best first.  The model is at the fit.  The
-  // response to each element is solved for once: it changes little from round
-  // to round, whereas the gradient is that of here.
-  std::vector<RegionMove> Moves() {
-    std::vector<RegionMove> moves = Neighbours();
-    SolveForResponses(moves);
+  // Returns the moves to the regions of neighbours that could cost less than
+  // this, the best first, with their least possible costs: those of a response
+  // that changes no further.  The model is at the fit.
+  std::vector<RegionMove> PromisingMoves(double most) {
     const Eigen::VectorXd gradient =
         -problem_.model.MultiplyTransposed(
             fit_.unknowns.Project(problem_.model.Residual())) /
         Variance();
-    for (RegionMove& move : moves) {
-      const double curvature =
-          fit_.unknowns.Project(responses_.at(move.element)).squaredNorm() /
-          Variance();
-      const double delta = DeltaOf(move);
-      move.cost +=
-          gradient(move.element) * delta + curvature * delta * delta / 2;
+    std::vector<RegionMove> moves;
+    for (int e = 0; e < int(regions_.size()); ++e) {
+      for (int region = 0; region < int(fit_.levels.size()); ++region) {
+        const bool is_beside =
+            std::any_of(neighbours_[e].begin(), neighbours_[e].end(),
+                        [&](int other) { return regions_[other] == region; });
+        if (is_beside && region != regions_[e]) {
+          RegionMove move = {e, region, 0};
+          move.cost = GrowthOf(move, regions_) + gradient(e) * DeltaOf(move);
+          if (move.cost < most) {
+            moves.push_back(move);
+          }
+        }
+      }
     }
-    std::sort(moves.begin(), moves.end(),
-              [](const RegionMove& a, const RegionMove& b) {
-                return std::make_pair(a.cost, a.element) <
-                       std::make_pair(b.cost, b.element);
-              });
+    SortByCost(moves);
+    moves.resize(std::min(moves.size(), kMostMoves));
+    SolveForResponses(moves);
     return moves;
   }
 
-  // Solves for the responses S e to elements that are not there yet.
+  // Returns moves that together lower the criterion of the linearised model, in
+  // the order in which each of them lowers it.
+  std::vector<RegionMove> JointMoves(std::vector<RegionMove> candidates) const {
+    std::vector<double> curvatures;
+    for (const RegionMove& move : candidates) {
+      curvatures.push_back(CurvatureOf(move.element));
+    }
+    const double variance = Variance();
+    std::vector<RegionMove> taken;
+    std::vector<int> regions = regions_;
+    Eigen::VectorXd residual = fit_.unknowns.Project(problem_.model.Residual());
+    for (bool has_gained = true; has_gained;) {
+      has_gained = false;
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        RegionMove& move = candidates[i];
+        if (regions[move.element] == move.region) {
+          continue;
+        }
+        const Eigen::VectorXd response = ResponseTo(move.element);
+        const double delta =
+            fit_.levels(move.region) - fit_.levels(regions[move.element]);
+        move.cost = GrowthOf(move, regions) -
+                    residual.dot(response) * delta / variance +
+                    curvatures[i] * delta * delta / 2;
+        if (move.cost < 0) {
+          residual -= delta * fit_.unknowns.Project(response);
+          regions[move.element] = move.region;
+          taken.push_back(move);
+          has_gained = true;
+        }
+      }
+    }
+    return taken;
+  }
+
+  // Returns the moves that lower it alone, the best first; each element once.
+  std::vector<RegionMove> SingleMoves(std::vector<RegionMove> moves) const {
+    for (RegionMove& move : moves) {
+      const double delta = DeltaOf(move);
+      move.cost += CurvatureOf(move.element) * delta * delta / 2;
+    }
+    SortByCost(moves);
+    std::vector<RegionMove> single;
+    std::set<int> elements;
+    for (const RegionMove& move : moves) {
+      if (move.cost < 0 && elements.insert(move.element).second) {
+        single.push_back(move);
+      }
+    }
+    return single;
+  }
+
+  Eigen::VectorXd ResponseTo(int element) const {
+    return responses_.at(element).cast<double>();
+  }
+
+  double CurvatureOf(int element) const {
+    return fit_.unknowns.Project(ResponseTo(element)).squaredNorm() /
+           Variance();
+  }
+
+  // Solves for the responses S e to elements that are not there yet, and
+  // forgets those of other elements.  A response changes little from round to
+  // round.
   void SolveForResponses(const std::vector<RegionMove>& moves) {
+    std::map<int, Eigen::VectorXf> responses;
     std::vector<int> missing;
     for (const RegionMove& move : moves) {
-      if (responses_.count(move.element) == 0 &&
-          (missing.empty() || missing.back() != move.element)) {
+      const auto found = responses_.find(move.element);
+      if (found != responses_.end()) {
+        responses.insert(*found);
+      } else if (responses.emplace(move.element, Eigen::VectorXf()).second) {
         missing.push_back(move.element);
       }
     }
-    Eigen::MatrixXd units = Eigen::MatrixXd::Zero(Eigen::Index(regions_.size()),
-                                                  Eigen::Index(missing.size()));
-    for (std::size_t i = 0; i < missing.size(); ++i) {
-      units(missing[i], Eigen::Index(i)) = 1;
+    for (std::size_t first = 0; first < missing.size(); first += kColumns) {
+      const std::size_t n = std::min(kColumns, missing.size() - first);
+      Eigen::MatrixXd units =
+          Eigen::MatrixXd::Zero(Eigen::Index(regions_.size()), Eigen::Index(n));
+      for (std::size_t i = 0; i < n; ++i) {
+        units(missing[first + i], Eigen::Index(i)) = 1;
+      }
+      const Eigen::MatrixXd columns = problem_.model.Multiply(units);
+      for (std::size_t i = 0; i < n; ++i) {
+        responses[missing[first + i]] =
+            columns.col(Eigen::Index(i)).cast<float>();
+      }
     }
-    const Eigen::MatrixXd columns = problem_.model.Multiply(units);
-    for (std::size_t i = 0; i < missing.size(); ++i) {
-      responses_[missing[i]] = columns.col(Eigen::Index(i));
-    }
+    responses_ = std::move(responses);
   }
 
   double DeltaOf(const RegionMove& move) const {
     return fit_.levels(move.region) - fit_.levels(regions_[move.element]);
   }
 
+  // Takes all moves or, where that is no better, the first half of them, a
+  // quarter, and so on.  The model is at the fit if any are taken.
+  bool TakeSome(std::vector<RegionMove> moves) {
+    while (!moves.empty()) {
+      if (Take(moves)) {
+        return true;
+      }
+      moves.resize(moves.size() / 2);
+    }
+    return false;
+  }
+
   bool Take(const std::vector<RegionMove>& moves) {
     std::vector<int> regions = regions_;
     for (const RegionMove& move : moves) {
-      // An element has its best move first.
-      if (regions[move.element] == regions_[move.element]) {
-        regions[move.element] = move.region;
-      }
+      regions[move.element] = move.region;
     }
     std::optional<LevelFit> fit =
         FitLevels(problem_, regions, fit_.levels, fit_.state.poisson_ratio);
@@ -202,19 +296,23 @@ class RegionSearch {
   // there with the probability p = 1 / (1 + e^c), which shifts the levels by
   // (Z^T Z)^-1 Z^T S e delta.
   void AddUncertainElements(Eigen::MatrixXd& covariance) {
-    for (const RegionMove& move : Moves()) {
-      const double p = 1 / (1 + std::exp(std::max(move.cost, 0.0)));
+    for (const RegionMove& move : PromisingMoves(kUnlikely)) {
+      const double delta = DeltaOf(move);
+      const double cost =
+          move.cost + CurvatureOf(move.element) * delta * delta / 2;
+      const double p = 1 / (1 + std::exp(std::max(cost, 0.0)));
       const Eigen::VectorXd shift =
-          DeltaOf(move) * fit_.unknowns.Solve(responses_.at(move.element));
+          delta * fit_.unknowns.Solve(ResponseTo(move.element));
       covariance += p * (1 - p) * shift * shift.transpose();
     }
   }
 
   const MapProblem& problem_;
-  const ElementFacets& facets_;
+  std::vector<std::vector<int>> neighbours_;
   std::vector<int> regions_;
   LevelFit fit_;
-  std::map<int, Eigen::VectorXd> responses_;  // S e, by elements.
+  // S e, by elements, in single precision, as there are many.
+  std::map<int, Eigen::VectorXf> responses_;
 };
 
 }  // namespace

@@ -1,13 +1,14 @@
 #include "elastimate/estimators/maps/sharpen_map.h"
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/solvers/conjugate_gradients.h"
+#include "elastimate/estimators/maps/element_factor.h"
 
 namespace elastimate {
 namespace {
@@ -72,33 +73,38 @@ class JumpPenalty {
 // S^T Pi S / sigma^2.
 class SharpPreconditioner {
  public:
-  SharpPreconditioner(Eigen::SparseMatrix<double> penalty,
-                      const Eigen::MatrixXd& modes)
-      : modes_(modes) {
+  explicit SharpPreconditioner(const Eigen::MatrixXd& modes) : modes_(modes) {}
+
+  // Takes another alpha R.
+  void SetPenalty(Eigen::SparseMatrix<double> penalty) {
     const Eigen::VectorXd diagonal = penalty.diagonal();
     const double shift = kSharpShift * diagonal.mean();
     for (Eigen::Index e = 0; e < penalty.rows(); ++e) {
       penalty.coeffRef(e, e) += shift;
     }
-    penalty_.compute(penalty);
-    solved_ = penalty_.solve(modes_);
-    Eigen::MatrixXd inner = modes_.transpose() * solved_;
+    if (penalty_) {
+      penalty_->Factorize(penalty);
+    } else {
+      penalty_.emplace(penalty);
+    }
+    const Eigen::MatrixXd by_penalty = penalty_->Solve(modes_);
+    Eigen::MatrixXd inner = ProductOfTransposed(modes_, by_penalty);
     inner.diagonal().array() += 1;
     const SymmetricEigenDecomposition of_inner = DecomposeSymmetric(inner);
-    // solved_ inner^(-1/2).
-    solved_ = solved_ * of_inner.vectors *
-              of_inner.values.cwiseSqrt().cwiseInverse().asDiagonal();
+    solved_ =
+        Product(by_penalty,
+                of_inner.vectors *
+                    of_inner.values.cwiseSqrt().cwiseInverse().asDiagonal());
   }
 
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& x) const {
-    const Eigen::MatrixXd by_penalty = penalty_.solve(x);
-    return by_penalty - solved_ * (solved_.transpose() * x);
+    return penalty_->Solve(x) - solved_ * (solved_.transpose() * x);
   }
 
  private:
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> penalty_;
   const Eigen::MatrixXd& modes_;
-  Eigen::MatrixXd solved_;
+  std::optional<ElementFactor> penalty_;
+  Eigen::MatrixXd solved_;  // (alpha R + shift)^-1 B inner^(-1/2).
 };
 
 }  // namespace
@@ -110,12 +116,14 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
   const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(prior.NumElements(), 1);
   const double variance = smooth.variance;
   const double noise = std::sqrt(variance);
-  const Eigen::Index num_modes = std::min(kMostModes, smooth.modes.Size());
+  const Eigen::Index num_modes =
+      std::min(kMostModes, smooth.modes.Values().size());
   const Eigen::MatrixXd modes =
       prior.ApplyInverseTransposed(smooth.modes.Vectors().leftCols(num_modes)) *
       (smooth.modes.Values().head(num_modes) / variance)
           .cwiseSqrt()
           .asDiagonal();
+  SharpPreconditioner preconditioner(modes);
   MapState state = smooth.state;
   double alpha = 0;
   for (int i = 0; i < kMostSharpSteps; ++i) {
@@ -134,7 +142,7 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
     const Eigen::VectorXd slope =
         model.MultiplyTransposed(unknowns.Project(residual)) / variance -
         curvature * state.log_moduli;
-    const SharpPreconditioner preconditioner(curvature, modes);
+    preconditioner.SetPenalty(curvature);
     ConjugateGradientOptions options;
     options.tolerance = kAccurateSharp;
     options.most_iterations = kMostSharpIterations;

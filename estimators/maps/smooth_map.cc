@@ -21,7 +21,7 @@ constexpr double kSettledRatio = 0.03;
 // The modes are renewed where ln E has changed by so much since.
 constexpr double kStaleModes = 0.1;
 // Modes beyond k lambda = 0.3 count to first order.
-constexpr double kLeastOfModes = 0.3;
+constexpr double kLeastOfModes = 3.0;
 constexpr double kAccurateSmooth = 1e-3;
 
 double RootMeanSquareOf(const Eigen::VectorXd& values) {
@@ -54,44 +54,62 @@ struct FieldEvidence {
   }
 };
 
-// Evaluates FieldEvidence::Of for many k, with the delta that the modes alone
-// give.  With the coordinates U^T g, g^T delta = k (|g|^2 - sum (k lambda /
-// (1 + k lambda)) (U^T g)^2).
+// Evaluates FieldEvidence::Of for many k.  With the coordinates U^T g of the
+// modes, and Lanczos' sums of what is beside them,
+//
+//   g^T delta = sum k / (1 + k lambda) (U^T g)^2 + g^T k (I + k H)^-1 g.
 class EvidenceOfModes {
  public:
-  explicit EvidenceOfModes(const FieldEvidence& evidence)
+  EvidenceOfModes(const FieldEvidence& evidence,
+                  const ColumnOperator& curvature)
       : evidence_(evidence),
         gradient_(
             ProductOfTransposed(evidence.modes.Vectors(), evidence.gradient)),
         y_(ProductOfTransposed(evidence.modes.Vectors(), evidence.y)),
-        squares_(evidence.gradient.squaredNorm(),
-                 evidence.gradient.dot(evidence.y), evidence.y.squaredNorm()) {}
+        scale_of_y_(evidence.y.isZero(0) || evidence.gradient.isZero(0)
+                        ? 1
+                        : evidence.gradient.norm() / evidence.y.norm()),
+        beside_(evidence.modes.BesideModes(curvature, VectorsBeside())) {}
 
   double At(double log_k) const {
     const double k = std::exp(log_k);
-    const Eigen::ArrayXd scaled = k * evidence_.modes.Values().array();
-    const double slope_square =
-        squares_(0) - 2 * squares_(1) / k + squares_(2) / (k * k);
-    const double along_modes =
-        (scaled / (1 + scaled) * (gradient_ - y_ / k).array().square()).sum();
-    return evidence_.Of(k, evidence_.square_sum + squares_(2) / k -
-                               k * (slope_square - along_modes));
+    const double along_modes = (k / (1 + k * evidence_.modes.Values().array()) *
+                                (gradient_ - y_ / k).array().square())
+                                   .sum();
+    const auto beside = [&](Eigen::Index column) {
+      return beside_.Of(column,
+                        [k](double value) { return k / (1 + k * value); });
+    };
+    const double of_y = 1 / (k * scale_of_y_);
+    const double twice_mixed = beside(2) - beside(0) - beside(1);
+    return evidence_.Of(
+        k, evidence_.square_sum + evidence_.y.squaredNorm() / k - along_modes -
+               beside(0) + of_y * twice_mixed - of_y * of_y * beside(1));
   }
 
  private:
+  // Returns the gradient, y at its length, and the sum of both, from whose
+  // squares their product follows.
+  Eigen::MatrixXd VectorsBeside() const {
+    Eigen::MatrixXd vectors(evidence_.y.size(), 3);
+    vectors << evidence_.gradient, scale_of_y_ * evidence_.y,
+        evidence_.gradient + scale_of_y_ * evidence_.y;
+    return vectors;
+  }
+
   const FieldEvidence& evidence_;
   Eigen::VectorXd gradient_;  // U^T A^T S^T Pi r.
   Eigen::VectorXd y_;         // U^T y.
-  // |A^T S^T Pi r|^2, its product with y, and |y|^2.
-  Eigen::Vector3d squares_;
+  double scale_of_y_;
+  LanczosSums beside_;
 };
 
 // Returns the k of the greatest evidence: of a scan, and then between its
 // points.  The data cannot support nearly as many parameters as there are
 // measurements: noise that is not known would then be found to be zero, and
 // where it is known, the model is wrong rather than the body that uneven.
-double BestRatio(const FieldEvidence& evidence) {
-  const EvidenceOfModes of_modes(evidence);
+double BestRatio(const EvidenceOfModes& of_modes,
+                 const FieldEvidence& evidence) {
   constexpr int kPoints = 65;
   const double most_supported =
       evidence.degrees_of_freedom * (evidence.problem.noise ? 2.0 : 1.0) / 3;
@@ -134,7 +152,7 @@ void FindRatio(const FieldEvidence& evidence, bool stays,
   for (Eigen::Index size = -1; size != map.modes.Size();) {
     size = map.modes.Size();
     if (!stays) {
-      map.ratio = BestRatio(evidence);
+      map.ratio = BestRatio(EvidenceOfModes(evidence, curvature), evidence);
     }
     map.modes.AddUntil(kLeastOfModes / map.ratio, curvature);
   }
@@ -257,7 +275,10 @@ double LogEvidenceByModes(const MapProblem& problem, const FieldPrior& other,
       of_other * (vectors.transpose() * map.y) / map.ratio,
       other.ApplyInverse(prior.Apply(map.y)),
       double(model.NumIndependentRows() - unknowns.Rank())};
-  return -EvidenceOfModes(evidence).At(std::log(BestRatio(evidence))) / 2;
+  const EvidenceOfModes of_modes(evidence, [](const Eigen::MatrixXd& columns) {
+    return Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+  });
+  return -of_modes.At(std::log(BestRatio(of_modes, evidence))) / 2;
 }
 
 }  // namespace elastimate

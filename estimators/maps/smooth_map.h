@@ -46,11 +46,12 @@ struct SmoothMap {
 ///
 /// with q / sigma^2 for the first term where sigma is known, N rows and p flat
 /// unknowns; gamma is at most (N - p) / 3, or twice that where sigma is known,
-/// lest noise pass for structure.  Cost: a factorisation and some ten solves
-/// for each of about six steps, and some 1.5 gamma solves, many columns at a
-/// time, each time the modes are renewed (two or three times); memory for
-/// num_elements x 1.5 gamma numbers, at most 1 GB.  The model is at the map
-/// afterwards.
+/// lest noise pass for structure.  As a function of k it follows from the modes
+/// and, beside them, from LanczosSums.  Cost: a factorisation and some hundred
+/// solves for each of about six steps, and a solve for each mode, many columns
+/// at a time, each time the modes are renewed (two or three times); memory for
+/// three numbers of each element and mode, at most 1 GB.  The model is at the
+/// map afterwards.
 [[nodiscard]] SmoothMap FitSmoothMap(const MapProblem& problem,
                                      const FieldPrior& prior,
                                      const LevelFit& homogeneous);

@@ -130,7 +130,8 @@ TEST(MapStages, HaveTheErrorsOfDenseMatrices) {
       a * (identity - covariance / map.ratio) * a.inverse();
   EXPECT_NEAR(map.effective_number, resolution.trace(),
               0.02 * resolution.trace());
-  const Eigen::VectorXd lengths = ResolutionLengths(stages.prior, map);
+  const Eigen::VectorXd lengths =
+      ResolutionLengths(stages.problem, stages.prior, map);
   for (Eigen::Index e = 0; e < n; ++e) {
     const double length =
         std::sqrt(stages.prior.Volumes()(e) / resolution(e, e));
