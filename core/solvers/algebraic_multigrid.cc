@@ -10,10 +10,11 @@ namespace elastimate {
 namespace {
 
 constexpr int kMostIterations = 500;
-// With the spaces of another matrix, new ones are sooner found than so many
-// iterations done, and are worth it where iterations are so much slower.
-constexpr int kMostIterationsOfOthers = 100;
+// The spaces of another matrix are given up where iterations are so much slower
+// than with their own.  So many may always be tried: to find new spaces takes
+// as long.
 constexpr double kMostSlowdown = 3;
+constexpr int kLeastIterationsOfOthers = 100;
 
 // Aggregates of few nodes leave coarse spaces modes without energy.
 constexpr double kShift = 1e-6;
@@ -168,8 +169,12 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
   forces(row_of_free_, Eigen::all) = right_hand_sides;
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
+  const double digits = -std::log10(tolerance);
   options.most_iterations =
-      are_spaces_of_matrix_ ? kMostIterations : kMostIterationsOfOthers;
+      are_spaces_of_matrix_
+          ? kMostIterations
+          : std::clamp(int(kMostSlowdown * iterations_per_digit_ * digits),
+                       kLeastIterationsOfOthers, kMostIterations);
   options.smallest_eigenvalue = smallest_eigenvalue_;
   const ConjugateGradientResult result = SolveByConjugateGradients(
       [&](const Eigen::MatrixXd& x) { return MultiplyAccurately(finest_, x); },
@@ -189,8 +194,7 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
   const double per_digit =
-      result.iterations /
-      (double(right_hand_sides.cols()) * -std::log10(tolerance));
+      result.iterations / (double(right_hand_sides.cols()) * digits);
   if (are_spaces_of_matrix_) {
     iterations_per_digit_ = std::max(iterations_per_digit_, per_digit);
   } else if (per_digit > kMostSlowdown * iterations_per_digit_) {

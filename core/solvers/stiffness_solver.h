@@ -39,8 +39,8 @@ inline Work operator-(const Work& a, const Work& b) {
 /// How linear systems are solved.
 enum class SolverKind {
   /// Multigrid where a factorisation takes longer, as its analysis tells.  In a
-  /// compact body that is from about 100 000 nodes on with linear tetrahedra
-  /// and 200 000 with quadratic ones, in plates and bars from many more on.
+  /// compact body that is from about 30 000 nodes on with linear tetrahedra and
+  /// 200 000 with quadratic ones, in plates and bars from many more on.
   kAutomatic,
   kCholesky,   ///< Direct.  In a compact body, time grows with nodes squared.
   kMultigrid,  ///< Conjugate gradients; needs PETSc (HasMultigrid).

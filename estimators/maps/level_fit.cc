@@ -26,7 +26,7 @@ Eigen::MatrixXd PartsOf(const std::vector<int>& part_of_element,
 std::optional<LevelFit> FitLevels(const MapProblem& problem,
                                   const std::vector<int>& part_of_element,
                                   const Eigen::VectorXd& levels,
-                                  double poisson_ratio) {
+                                  double poisson_ratio, double most) {
   FieldSensitivity& model = problem.model;
   const Eigen::MatrixXd parts = PartsOf(part_of_element, levels.size());
   const double num_rows = double(model.NumIndependentRows());
@@ -41,6 +41,9 @@ std::optional<LevelFit> FitLevels(const MapProblem& problem,
     FlatUnknowns unknowns(problem, state, parts);
     const double gain =
         square_sum - unknowns.Project(model.Residual()).squaredNorm();
+    if (i == 0 && square_sum - gain > most) {
+      return std::nullopt;
+    }
     const Eigen::VectorXd step = unknowns.Solve(model.Residual());
     LevelFit fit = {z, state, square_sum, unknowns};
     if (i == kMostLevelSteps ||

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_MAPS_LEVEL_FIT_H_
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -25,10 +26,13 @@ struct LevelFit {
 /// (FitMaterials) are not: Gauss-Newton with backtracking from `start` on,
 /// whose moduli are equal within each part.  The model is at the fit
 /// afterwards.  A solve for each part and load case in each of some five steps.
-/// Empty where the stiffness is singular at the start.
+/// Empty where the stiffness is singular at the start, and where the model that
+/// is linearised there leaves more than `most` of the square sum, which one
+/// factorisation tells.
 [[nodiscard]] std::optional<LevelFit> FitLevels(
     const MapProblem& problem, const std::vector<int>& part_of_element,
-    const Eigen::VectorXd& levels, double poisson_ratio);
+    const Eigen::VectorXd& levels, double poisson_ratio,
+    double most = std::numeric_limits<double>::infinity());
 
 }  // namespace elastimate
 

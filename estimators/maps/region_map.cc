@@ -119,6 +119,12 @@ class RegionSearch {
     return twice / 2;
   }
 
+  // Returns what the criterion has beside the misfit.
+  double CostOf(const std::vector<int>& regions) const {
+    return double(fit_.levels.size()) * std::log(NumRows()) +
+           2 * double(NumFacetsBetween(regions));
+  }
+
   double CriterionOf(const std::vector<int>& regions,
                      const LevelFit& fit) const {
     const double n = NumRows();
@@ -126,8 +132,14 @@ class RegionSearch {
                 ? fit.square_sum / problem_.Variance(0, 1)
                 : n * std::log(std::max(fit.square_sum,
                                         n * kLeastNoise * kLeastNoise))) +
-           double(fit.levels.size()) * std::log(n) +
-           2 * double(NumFacetsBetween(regions));
+           CostOf(regions);
+  }
+
+  // Returns the square sum from which on regions are no better.
+  double MostSquareSum(const std::vector<int>& regions) const {
+    const double of_misfit = Criterion() - CostOf(regions);
+    return problem_.noise ? of_misfit * problem_.Variance(0, 1)
+                          : std::exp(of_misfit / NumRows());
   }
 
   // Returns by how many facets the boundaries grow where an element moves.
@@ -283,7 +295,8 @@ class RegionSearch {
       regions[move.element] = move.region;
     }
     std::optional<LevelFit> fit =
-        FitLevels(problem_, regions, fit_.levels, fit_.state.poisson_ratio);
+        FitLevels(problem_, regions, fit_.levels, fit_.state.poisson_ratio,
+                  MostSquareSum(regions));
     if (fit && CriterionOf(regions, *fit) < Criterion()) {
       regions_ = regions;
       fit_ = *fit;

@@ -90,6 +90,28 @@ TEST_P(SolvedTwice, AgreesInEnergyToTheTolerance) {
   }
 }
 
+// The spaces of a matrix serve another one, whatever its scale, and new ones
+// are set up where they no longer do.
+TEST_P(SolvedTwice, KeepsItsSpacesWhileTheyServe) {
+  const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 1, 4);
+  const auto error_of_solution = [&](const Eigen::VectorXd& values) {
+    EXPECT_TRUE(cholesky_.Factorize(values));
+    EXPECT_TRUE(multigrid_->Factorize(values));
+    const Eigen::VectorXd exact = *cholesky_.Solve(b, 0);
+    const std::optional<Eigen::MatrixXd> solution = multigrid_->Solve(b, 1e-6);
+    return solution ? std::sqrt(Energy(values, solution->col(0) - exact) /
+                                Energy(values, exact))
+                    : std::numeric_limits<double>::infinity();
+  };
+  EXPECT_LE(error_of_solution(assembly_.Combine(0.3)), 1e-6);
+  EXPECT_LE(error_of_solution(7 * assembly_.Combine(0.32)), 1e-6);
+  EXPECT_EQ(multigrid_->NumSetUps(), 1);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LE(error_of_solution(assembly_.Combine(0.4999)), 1e-6);
+  }
+  EXPECT_EQ(multigrid_->NumSetUps(), 2);
+}
+
 TEST_P(SolvedTwice, RunsTwiceAlike) {
   const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 1, 2);
   const Eigen::VectorXd values = assembly_.Combine(0.3);

@@ -75,7 +75,7 @@ TEST(StiffnessSolver, FactorisesWhatAFactorisationIsBestFor) {
 }
 
 TEST(StiffnessSolver, ChoosesMultigridForALargeBodyOrSaysWhyNot) {
-  const Mesh cube = BoxMesh({50, 50, 50}, {1, 1, 1});
+  const Mesh cube = BoxMesh({40, 40, 40}, {1, 1, 1});
   const Scene scene = HeldAtBottom(cube, cube, Eigen::Vector3d::Zero());
   const StiffnessSolver solver(scene.mesh, scene.supports,
                                SolverKind::kAutomatic);
