@@ -30,7 +30,8 @@ namespace elastimate {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Returns a value of a corner of each element.
+// Sets `of_corner` to the three components of the values at a corner of as many
+// elements as there are lanes.
 HWY_INLINE void GatherCorner(const CornerRows& rows, int corner, int p,
                              const double* values, Number (&of_corner)[3]) {
   const std::int64_t* const row = rows[corner] + p;
@@ -103,8 +104,9 @@ void SetFieldGradients(const CornerRows& rows, int count,
   }
 }
 
-// Adds forces to a corner of each of `count` elements, one after the other
-// because they may share nodes.
+// Adds forces to a corner of each element in the lanes, of the first `count`
+// where fewer are left.  It adds one after the other, because elements may
+// share nodes.
 HWY_INLINE void AddToCorner(const std::int64_t* row, int count, Number x,
                             Number y, Number z, double* forces) {
 #if ELASTIMATE_HAS_BATCHES

@@ -10,9 +10,10 @@ namespace elastimate {
 namespace {
 
 constexpr int kMostIterations = 500;
-// The spaces of another matrix are given up where iterations are so much slower
-// than with their own.  So many may always be tried: to find new spaces takes
-// as long.
+// Spaces of another matrix are replaced at the next matrix where a solve needs
+// so many times the iterations per digit that their own matrix needed.  A solve
+// is stopped for that beyond 100 iterations only, because finding new spaces
+// takes as long.
 constexpr double kMostSlowdown = 3;
 constexpr int kLeastIterationsOfOthers = 100;
 
@@ -169,7 +170,7 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
   forces(row_of_free_, Eigen::all) = right_hand_sides;
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
-  const double digits = -std::log10(tolerance);
+  const double digits = std::clamp(-std::log10(tolerance), 1.0, 16.0);
   options.most_iterations =
       are_spaces_of_matrix_
           ? kMostIterations
@@ -193,9 +194,11 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
     return std::nullopt;
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
+  const Eigen::Index num_columns =
+      (forces.colwise().squaredNorm().array() > 0).count();
   const double per_digit =
-      result.iterations / (double(right_hand_sides.cols()) * digits);
-  if (are_spaces_of_matrix_) {
+      result.iterations / (digits * std::max(double(num_columns), 1.0));
+  if (are_spaces_of_matrix_ || iterations_per_digit_ == 0) {
     iterations_per_digit_ = std::max(iterations_per_digit_, per_digit);
   } else if (per_digit > kMostSlowdown * iterations_per_digit_) {
     are_spaces_slow_ = true;

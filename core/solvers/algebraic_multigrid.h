@@ -19,12 +19,12 @@ namespace elastimate {
 /// spaces.  Time and memory grow linearly with the number of nodes; the number
 /// of iterations grows as nu nears 1/2, and with bad elements.
 ///
-/// The spaces of one matrix serve the next ones as well, in proportion to their
-/// diagonals, until iterations become slow: to find them takes as long as a
-/// hundred iterations.
+/// Coarse spaces are kept for the next matrices, scaled by the ratio of the
+/// traces, until solves become slow, because finding new ones takes as long as
+/// about a hundred iterations.
 ///
-/// The products of an iteration take the cores there are, by OpenMP, and so do
-/// not those that an outer parallel region shares.
+/// OpenMP spreads the products of an iteration over the cores there are, except
+/// within an outer parallel region.
 class AlgebraicMultigrid : public LinearSolver {
  public:
   /// Finds the spaces for a matrix of these values in the pattern; tells
@@ -59,12 +59,13 @@ class AlgebraicMultigrid : public LinearSolver {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;
   bool are_spaces_of_matrix_ = false;
   bool are_spaces_slow_ = true;
-  double diagonal_of_spaces_ = 0;  ///< Of the matrix that the spaces are of.
+  double diagonal_of_spaces_ = 0;  ///< The trace of their own matrix.
   double scale_ = 1;               ///< The present diagonal over that one.
-  /// Iterations for each digit and column with spaces of the same matrix.
+  /// The most iterations for each decimal digit and column that a solve took
+  /// with spaces of its own matrix; 0 before any.
   double iterations_per_digit_ = 0;
   /// The smallest eigenvalue of the preconditioned matrix that any solution
-  /// met so far.
+  /// met since the last set-up, for any matrix.
   double smallest_eigenvalue_ = 1;
   int num_iterations_ = 0;
   int num_set_ups_ = 0;

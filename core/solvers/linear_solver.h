@@ -18,7 +18,8 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
 
   /// Prepares the matrix of these values (in the order of the pattern) for
-  /// Solve, to which Solve may refer.  Returns false when that fails: the
+  /// Solve, which may read them again: they must stay as they are until the
+  /// next Factorize.  Returns false when that fails: the
   /// matrix may be singular to working precision.  Throws std::bad_alloc when
   /// there is not enough memory.
   virtual bool Factorize(const Eigen::VectorXd& values) = 0;

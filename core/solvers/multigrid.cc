@@ -73,14 +73,14 @@ std::unique_ptr<LinearSolver> MakeMultigrid(
   if (void (*const start)() = start_of_petsc) {
     start();
   }
-  // Products with matrices of meshes as Gmsh numbers them take 1.5 times as
-  // long.
+  // In Gmsh's numbering, products would take 1.5 times as long.
   const std::vector<int> order =
       HasLocality(mesh) ? std::vector<int>() : OrderForLocality(mesh).places;
   return std::make_unique<AlgebraicMultigrid>(
       NodeBlocks(assembly.Graph(), degrees_of_freedom, order),
       [&, order](const Eigen::VectorXd& values, MultigridSpaces& spaces) {
-        // PETSc needs ascending columns, which only the order of nodes has.
+        // PETSc needs ascending columns, so it gets blocks in the order of the
+        // nodes.
         const NodeBlocks blocks(assembly.Graph(), degrees_of_freedom, {});
         if (!TheModule().find_spaces(mesh, blocks, values, spaces)) {
           return false;

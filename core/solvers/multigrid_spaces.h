@@ -9,9 +9,10 @@ namespace elastimate {
 
 /// The coarse spaces of a multigrid method, from coarse to fine.
 struct MultigridSpaces {
-  /// The matrix in each of them.
+  /// The matrix of each coarse space, without that of the finest.
   std::vector<BlockMatrix> matrices;
-  /// From each of them to the next finer one, at last to the finest space.
+  /// The interpolation from each coarse space to the next finer one.  The last
+  /// leads to the finest space.
   std::vector<BlockMatrix> interpolations;
 };
 

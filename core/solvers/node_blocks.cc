@@ -28,8 +28,8 @@ NodeBlocks::NodeBlocks(const NodeGraph& graph,
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   column_.resize(start_.back());
   std::vector<Eigen::Index> next(start_.begin(), start_.end() - 1);
-  // A node is entered into the rows of later ones before these get their
-  // diagonals.
+  // Each row first gets the nodes before its own, then its own, then the later
+  // ones, so that columns ascend by node.
   VisitPairs([&](int a, int b) {
     column_[next[a]++] = b;
     if (a != b) {

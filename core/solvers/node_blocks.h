@@ -11,15 +11,16 @@
 
 namespace elastimate {
 
-/// The pattern of a stiffness matrix by blocks of nodes, which multigrid needs
-/// to be of equal size: the matrix has all components of each node that has a
-/// free one.  Where a component is held, its row has only a diagonal entry, of
-/// the size of the others of its node.
+/// The pattern of a stiffness matrix in square blocks, one for each pair of
+/// coupled nodes.  Multigrid needs blocks of equal size, so each node with a
+/// free component has rows for all its components.  The row of a held component
+/// has only a diagonal entry, as large as the largest of its node.
 class NodeBlocks {
  public:
-  /// Numbers the blocks in this order of the nodes, or as the nodes where it is
-  /// empty.  Refers to the first two arguments, which have to outlive this
-  /// object.  Throws std::bad_alloc.
+  /// The i-th row of blocks belongs to node order[i]; without an order, rows
+  /// follow the nodes.  Nodes without a free component are skipped.  The graph
+  /// lists the pair of each node with itself first.  Refers to the first two
+  /// arguments, which have to outlive this object.  Throws std::bad_alloc.
   NodeBlocks(const NodeGraph& graph, const DegreesOfFreedom& degrees_of_freedom,
              const std::vector<int>& order);
 
@@ -29,17 +30,18 @@ class NodeBlocks {
   const std::vector<int>& OfNodes() const { return of_node_; }
   /// Returns the row of the matrix for each free degree of freedom.
   std::vector<int> RowsOfFree() const;
-  /// The blocks by their rows, compressed.  Columns ascend with the nodes.
+  /// The blocks by their rows, compressed.  The columns of a row ascend by
+  /// node, so by number only without an order.
   const std::vector<Eigen::Index>& Start() const { return start_; }
   const std::vector<int>& Columns() const { return column_; }
 
-  /// Calls visit(block, i, j, value) for each entry (i, j) of the matrix of
-  /// these values, in the order of the pattern of a StiffnessAssembly: that of
-  /// the block is its place in Columns.
+  /// Calls visit(block, i, j, value) for each entry.  `block` is the place of
+  /// its block in Columns(), and (i, j) is its place in the block.  `values`
+  /// are in the order of a StiffnessAssembly.
   template <class Visitor>
   void VisitEntries(const Eigen::VectorXd& values, const Visitor& visit) const;
 
-  /// Returns this matrix, with its rest.
+  /// Returns the matrix of these values, with its `rest`.
   [[nodiscard]] BlockMatrix MatrixOf(const Eigen::VectorXd& values) const;
 
  private:

@@ -127,7 +127,8 @@ void PetscMatrix::SetEntries(const Eigen::VectorXd& values) {
   }
   row_start_.assign(1, 0);
   column_.reserve(num_entries);
-  // The first entry of each block, and how many are in each of its rows.
+  // The place of the first entry of each block, and the length of the rows of
+  // the matrix that it lies in.
   std::vector<PetscInt> first(blocks_.Columns().size());
   std::vector<PetscInt> row_length(blocks_.Columns().size());
   for (int a = 0; a < blocks_.NumBlocks(); ++a) {

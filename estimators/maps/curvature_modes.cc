@@ -13,11 +13,16 @@ namespace elastimate {
 namespace {
 
 constexpr Eigen::Index kFirstModes = 64;
-// Each of three matrices has at most so many entries, which take 1 GB in all.
-constexpr double kMostModeEntries = 4e7;
-constexpr Eigen::Index kProbes = 8;
-// Beside the modes k lambda is small, or some tens where memory bounds them, so
-// that 20 steps give sums to a per cent.
+// Three and a half matrices have at most so many entries each, which take 1 GB
+// in all.
+constexpr double kMostModeEntries = 3.5e7;
+// Random vectors for sums over what is beside the modes: as many as cost
+// little, since a sum of f has the variance 2 |f|^2 over their number.
+constexpr Eigen::Index kLeastProbes = 8;
+constexpr Eigen::Index kMostProbes = 32;
+constexpr Eigen::Index kProbeEntries = 50000;
+// Beside the accurate modes k lambda is at most some tens, where 20 steps are
+// accurate to a per cent.
 constexpr int kLanczosSteps = 20;
 
 // Returns orthonormal columns up to rounding times the square of the condition
@@ -36,7 +41,8 @@ void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
   const Eigen::Index most = std::min<Eigen::Index>(
       size, std::max<Eigen::Index>(
                 kFirstModes, Eigen::Index(kMostModeEntries / double(size))));
-  while (basis_.cols() < most && (Size() == 0 || values_(Size() - 1) > least)) {
+  while (basis_.cols() < most && !HasWholeSpan() &&
+         (Size() == 0 || values_(Size() - 1) > least)) {
     const Eigen::Index old = basis_.cols();
     const Eigen::Index more =
         std::min(std::max(kFirstModes, old / 2), most - old);
@@ -123,10 +129,14 @@ LanczosSums CurvatureModes::BesideModes(const ColumnOperator& multiply,
 void CurvatureModes::MeasureRest(const ColumnOperator& multiply) {
   const Eigen::Index size = basis_.rows();
   rest_.reset();
-  SetAccurate(basis_.cols() < size ? (Size() + 1) / 2 : Size());
-  if (basis_.cols() < size) {
+  SetAccurate(HasWholeSpan() ? Size() : (Size() + 1) / 2);
+  if (!HasWholeSpan()) {
     std::mt19937_64 generator(0);
-    rest_ = BesideModes(multiply, StandardNormal(size, kProbes, generator));
+    rest_ = BesideModes(
+        multiply,
+        StandardNormal(
+            size, std::clamp(kProbeEntries / size, kLeastProbes, kMostProbes),
+            generator));
   }
 }
 

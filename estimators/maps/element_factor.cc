@@ -1,6 +1,7 @@
 #include "elastimate/estimators/maps/element_factor.h"
 
 #include <cstdint>
+#include <new>
 #include <vector>
 
 #include "elastimate/core/solvers/nested_dissection.h"
@@ -23,12 +24,21 @@ ElementFactor::ElementFactor(const Eigen::SparseMatrix<double>& matrix) {
   Eigen::SparseMatrix<double> permuted;
   permuted = matrix.twistedBy(order_);
   inverse_.compute(permuted);
+  CheckFactor();
 }
 
 void ElementFactor::Factorize(const Eigen::SparseMatrix<double>& matrix) {
   Eigen::SparseMatrix<double> permuted;
   permuted = matrix.twistedBy(order_);
   inverse_.factorize(permuted);
+  CheckFactor();
+}
+
+void ElementFactor::CheckFactor() const {
+  // The matrices are positive definite, so that only memory can be missing.
+  if (inverse_.info() != Eigen::Success) {
+    throw std::bad_alloc();
+  }
 }
 
 Eigen::MatrixXd ElementFactor::Solve(const Eigen::MatrixXd& b) const {

@@ -8,7 +8,8 @@
 namespace elastimate {
 
 /// The Cholesky factors of positive definite matrices that couple each element
-/// with its neighbours, by CHOLMOD in the order of nested dissection.
+/// with its neighbours, by CHOLMOD in the order of nested dissection.  Throws
+/// std::bad_alloc where memory is missing.
 class ElementFactor {
  public:
   /// Orders and analyses the pattern of a matrix, and factorises it.
@@ -21,6 +22,8 @@ class ElementFactor {
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& b) const;
 
  private:
+  void CheckFactor() const;
+
   Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< From rows to places.
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> inverse_;
 };

@@ -21,8 +21,8 @@ Eigen::VectorXd SharesOfModes(const SmoothMap& map) {
   return scaled / (1 + scaled);
 }
 
-// Returns numbers of elements after each has become the mean of itself and its
-// neighbours, weighted by their volumes, some times over.
+// Replaces the density (number over volume) of each element by its mean over
+// the element and its neighbours, `num_times` times.
 Eigen::VectorXd Smoothed(const FieldPrior& prior, Eigen::VectorXd of_elements,
                          int num_times) {
   for (int i = 0; i < num_times; ++i) {

@@ -54,10 +54,11 @@ struct MapChanges {
 /// Returns l_e = (V_e / R_ee)^(1/d) [length], the size of what the data resolve
 /// around each element, at most that of the body.  R = A W A^-1 with
 /// W = k H (I + k H)^-1 is the resolution, whose trace is gamma.  Its diagonal
-/// follows from the modes of H.  What is beside the modes follows from the
-/// mean of z R z over random signs z, which changes little from one element to
-/// the next and is smoothed.  Precondition: the model is at the map.  Cost: 64
-/// solves of the system, all at once, unless all modes are there.
+/// follows from the modes of H.  The rest of the diagonal is the mean of
+/// z_e (R z)_e over 64 vectors z of random signs.  It is then smoothed over
+/// neighbours, because it changes little between them.  Precondition: the model
+/// is at the map.  Cost: 64 solves of the system, all at once, unless all modes
+/// are there.
 [[nodiscard]] Eigen::VectorXd ResolutionLengths(const MapProblem& problem,
                                                 const FieldPrior& prior,
                                                 const SmoothMap& map);

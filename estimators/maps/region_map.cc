@@ -14,12 +14,16 @@ namespace {
 
 constexpr Eigen::Index kMostRegions = 3;
 constexpr int kMostRegionRounds = 15;
+constexpr int kMostSweeps = 50;
+// Measurements for each unknown, below which their noise, where it is not
+// known, passes for structure.
+constexpr Eigen::Index kRowsForEach = 3;
 // So many responses are kept at a time, which bounds their memory, and so many
 // solved for together.
 constexpr std::size_t kMostMoves = 2000;
 constexpr std::size_t kColumns = 64;
-// Elements that would have to pay so much, in -ln of the posterior, stay where
-// they are with a probability of 99.8 %.
+// An element whose move costs so much, in -ln of the posterior, stays with a
+// probability of 99.8 %, and is left out.
 constexpr double kUnlikely = 6;
 
 // Means of values with weights, ascending, from quantiles on (Lloyd).
@@ -41,8 +45,8 @@ Eigen::VectorXd ClusterMeans(const Eigen::VectorXd& values,
   return means;
 }
 
-// An element at a boundary, the region on the other side, and what the misfit
-// and the boundary gain where it goes there.
+// An element at a boundary, the region on the other side, and how much the
+// criterion grows if it goes there.
 struct RegionMove {
   int element;
   int region;
@@ -55,6 +59,11 @@ void SortByCost(std::vector<RegionMove>& moves) {
               return std::make_pair(a.cost, a.element) <
                      std::make_pair(b.cost, b.element);
             });
+}
+
+bool AreAllThere(const std::vector<int>& regions, Eigen::Index num_regions) {
+  return std::set<int>(regions.begin(), regions.end()).size() ==
+         std::size_t(num_regions);
 }
 
 // Returns the elements beside each element.
@@ -82,9 +91,10 @@ class RegionSearch {
   void Improve() {
     for (int round = 0; round < kMostRegionRounds; ++round) {
       const std::vector<RegionMove> moves = PromisingMoves(0);
-      // Moves that each gain alone, more than gain together, may do where the
-      // linearised model is far off.
-      if (!TakeSome(JointMoves(moves)) && !TakeSome(SingleMoves(moves))) {
+      // Some moves gain together only, and where the linearised model is far
+      // off, moves that each gain by themselves may still do.
+      if (!TakeSome(JointMoves(moves)) && !TakeSome(RelaxedMoves(moves)) &&
+          !TakeSome(SingleMoves(moves))) {
         return;
       }
     }
@@ -127,12 +137,7 @@ class RegionSearch {
 
   double CriterionOf(const std::vector<int>& regions,
                      const LevelFit& fit) const {
-    const double n = NumRows();
-    return (problem_.noise
-                ? fit.square_sum / problem_.Variance(0, 1)
-                : n * std::log(std::max(fit.square_sum,
-                                        n * kLeastNoise * kLeastNoise))) +
-           CostOf(regions);
+    return 2 * MisfitOf(fit.square_sum) + CostOf(regions);
   }
 
   // Returns the square sum from which on regions are no better.
@@ -154,8 +159,8 @@ class RegionSearch {
   }
 
   // Returns the moves to the regions of neighbours that could cost less than
-  // this, the best first, with their least possible costs: those of a response
-  // that changes no further.  The model is at the fit.
+  // this, the best first, with lower bounds of their costs, without the
+  // curvature, which takes a solve.  The model is at the fit.
   std::vector<RegionMove> PromisingMoves(double most) {
     const Eigen::VectorXd gradient =
         -problem_.model.MultiplyTransposed(
@@ -182,31 +187,42 @@ class RegionSearch {
     return moves;
   }
 
+  // Returns half of the misfit's part in the criterion.
+  double MisfitOf(double square_sum) const {
+    const double n = NumRows();
+    return problem_.noise ? square_sum / (2 * problem_.Variance(0, 1))
+                          : n / 2 *
+                                std::log(std::max(
+                                    square_sum, n * kLeastNoise * kLeastNoise));
+  }
+
   // Returns moves that together lower the criterion of the linearised model, in
   // the order in which each of them lowers it.
-  std::vector<RegionMove> JointMoves(std::vector<RegionMove> candidates) const {
+  std::vector<RegionMove> JointMoves(
+      const std::vector<RegionMove>& candidates) const {
     std::vector<double> curvatures;
     for (const RegionMove& move : candidates) {
-      curvatures.push_back(CurvatureOf(move.element));
+      curvatures.push_back(
+          fit_.unknowns.Project(ResponseTo(move.element)).squaredNorm());
     }
-    const double variance = Variance();
     std::vector<RegionMove> taken;
     std::vector<int> regions = regions_;
     Eigen::VectorXd residual = fit_.unknowns.Project(problem_.model.Residual());
-    for (bool has_gained = true; has_gained;) {
+    bool has_gained = true;
+    for (int sweep = 0; has_gained && sweep < kMostSweeps; ++sweep) {
       has_gained = false;
       for (std::size_t i = 0; i < candidates.size(); ++i) {
-        RegionMove& move = candidates[i];
+        const RegionMove& move = candidates[i];
         if (regions[move.element] == move.region) {
           continue;
         }
         const Eigen::VectorXd response = ResponseTo(move.element);
         const double delta =
             fit_.levels(move.region) - fit_.levels(regions[move.element]);
-        move.cost = GrowthOf(move, regions) -
-                    residual.dot(response) * delta / variance +
-                    curvatures[i] * delta * delta / 2;
-        if (move.cost < 0) {
+        const double square_sum = residual.squaredNorm();
+        const double next = square_sum - 2 * delta * residual.dot(response) +
+                            curvatures[i] * delta * delta;
+        if (GrowthOf(move, regions) + MisfitOf(next) < MisfitOf(square_sum)) {
           residual -= delta * fit_.unknowns.Project(response);
           regions[move.element] = move.region;
           taken.push_back(move);
@@ -217,7 +233,46 @@ class RegionSearch {
     return taken;
   }
 
-  // Returns the moves that lower it alone, the best first; each element once.
+  // Returns the moves of which more than a half is taken, most of it first,
+  // where shares t of all moves minimise the misfit of the linearised model and
+  // the growth of the boundaries.
+  std::vector<RegionMove> RelaxedMoves(
+      const std::vector<RegionMove>& candidates) const {
+    const double variance = Variance();
+    std::vector<double> shares(candidates.size(), 0);
+    std::vector<Eigen::VectorXf> changes;
+    for (const RegionMove& move : candidates) {
+      const Eigen::VectorXd change =
+          DeltaOf(move) * fit_.unknowns.Project(ResponseTo(move.element));
+      changes.push_back(change.cast<float>());
+    }
+    const Eigen::VectorXd at_start =
+        fit_.unknowns.Project(problem_.model.Residual());
+    Eigen::VectorXf residual = at_start.cast<float>();
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const double gain = double(residual.dot(changes[i])) -
+                            variance * GrowthOf(candidates[i], regions_);
+        const double curvature = std::max(double(changes[i].squaredNorm()),
+                                          std::numeric_limits<double>::min());
+        const double share = std::clamp(shares[i] + gain / curvature, 0.0, 1.0);
+        residual -= float(share - shares[i]) * changes[i];
+        shares[i] = share;
+      }
+    }
+    std::vector<RegionMove> moves;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (shares[i] > 0.5) {
+        moves.push_back(
+            {candidates[i].element, candidates[i].region, -shares[i]});
+      }
+    }
+    SortByCost(moves);
+    return moves;
+  }
+
+  // Returns the moves that lower the criterion by themselves, the best first;
+  // each element once.
   std::vector<RegionMove> SingleMoves(std::vector<RegionMove> moves) const {
     for (RegionMove& move : moves) {
       const double delta = DeltaOf(move);
@@ -294,10 +349,14 @@ class RegionSearch {
     for (const RegionMove& move : moves) {
       regions[move.element] = move.region;
     }
+    if (!AreAllThere(regions, fit_.levels.size())) {
+      return false;
+    }
     std::optional<LevelFit> fit =
         FitLevels(problem_, regions, fit_.levels, fit_.state.poisson_ratio,
                   MostSquareSum(regions));
-    if (fit && CriterionOf(regions, *fit) < Criterion()) {
+    if (fit && fit->unknowns.Rank() == fit_.unknowns.Rank() &&
+        CriterionOf(regions, *fit) < Criterion()) {
       regions_ = regions;
       fit_ = *fit;
       return true;
@@ -334,6 +393,7 @@ std::optional<RegionMap> FitRegions(const MapProblem& problem,
                                     const FieldPrior& prior,
                                     const MapState& sharpened,
                                     const LevelFit& homogeneous) {
+  const Eigen::Index num_rows = problem.model.NumIndependentRows();
   std::optional<RegionMap> best;
   double least = std::numeric_limits<double>::infinity();
   const RegionSearch whole(
@@ -350,9 +410,14 @@ std::optional<RegionMap> FitRegions(const MapProblem& problem,
           .minCoeff(&nearest);
       regions[e] = int(nearest);
     }
+    const Eigen::Index rank = homogeneous.unknowns.Rank() + k - 1;
+    if (!AreAllThere(regions, k) ||
+        (!problem.noise && kRowsForEach * rank > num_rows)) {
+      continue;
+    }
     std::optional<LevelFit> fit =
         FitLevels(problem, regions, means, sharpened.poisson_ratio);
-    if (!fit) {
+    if (!fit || fit->unknowns.Rank() != rank) {
       continue;
     }
     RegionSearch search(problem, prior, regions, *fit);

@@ -75,7 +75,7 @@ class SharpPreconditioner {
  public:
   explicit SharpPreconditioner(const Eigen::MatrixXd& modes) : modes_(modes) {}
 
-  // Takes another alpha R.
+  // Factorises the preconditioner for this alpha R.
   void SetPenalty(Eigen::SparseMatrix<double> penalty) {
     const Eigen::VectorXd diagonal = penalty.diagonal();
     const double shift = kSharpShift * diagonal.mean();

@@ -20,7 +20,8 @@ constexpr double kSettledField = 3e-3;
 constexpr double kSettledRatio = 0.03;
 // The modes are renewed where ln E has changed by so much since.
 constexpr double kStaleModes = 0.1;
-// Modes beyond k lambda = 0.3 count to first order.
+// Modes are added until k lambda falls below this; LanczosSums count what is
+// beside them.
 constexpr double kLeastOfModes = 3.0;
 constexpr double kAccurateSmooth = 1e-3;
 
@@ -88,8 +89,8 @@ class EvidenceOfModes {
   }
 
  private:
-  // Returns the gradient, y at its length, and the sum of both, from whose
-  // squares their product follows.
+  // Returns the gradient, y scaled to its length, and the sum of both, from
+  // whose squares their product follows.
   Eigen::MatrixXd VectorsBeside() const {
     Eigen::MatrixXd vectors(evidence_.y.size(), 3);
     vectors << evidence_.gradient, scale_of_y_ * evidence_.y,
@@ -146,7 +147,7 @@ double BestRatio(const EvidenceOfModes& of_modes,
   return std::exp((a + b) / 2);
 }
 
-// Finds k, unless it stays, and as many modes as count at that k.
+// Finds k, unless it is to stay as it is, and as many modes as count at that k.
 void FindRatio(const FieldEvidence& evidence, bool stays,
                const ColumnOperator& curvature, SmoothMap& map) {
   for (Eigen::Index size = -1; size != map.modes.Size();) {
@@ -258,9 +259,9 @@ double LogEvidenceByModes(const MapProblem& problem, const FieldPrior& other,
   FieldSensitivity& model = problem.model;
   const Eigen::Index n = prior.NumElements();
   const FlatUnknowns unknowns(problem, map.state, Eigen::MatrixXd::Ones(n, 1));
-  // Those that count are the accurate ones.
-  const Eigen::Index size =
-      (map.ratio * map.modes.Values().array() >= kLeastOfModes).count();
+  // Smaller ones hardly count.  There is always a largest one.
+  const Eigen::Index size = std::max<Eigen::Index>(
+      (map.ratio * map.modes.Values().array() >= kLeastOfModes).count(), 1);
   const auto vectors = map.modes.Vectors().leftCols(size);
   const Eigen::MatrixXd of_other =
       other.ApplyTransposed(prior.ApplyInverseTransposed(vectors));

@@ -46,21 +46,21 @@ struct SmoothMap {
 ///
 /// with q / sigma^2 for the first term where sigma is known, N rows and p flat
 /// unknowns; gamma is at most (N - p) / 3, or twice that where sigma is known,
-/// lest noise pass for structure.  As a function of k it follows from the modes
-/// and, beside them, from LanczosSums.  Cost: a factorisation and some hundred
-/// solves for each of about six steps, and a solve for each mode, many columns
-/// at a time, each time the modes are renewed (two or three times); memory for
-/// three numbers of each element and mode, at most 1 GB.  The model is at the
-/// map afterwards.
+/// lest noise pass for structure.  The evidence as a function of k is computed
+/// from the modes and, beside them, from LanczosSums.  Cost: a factorisation
+/// and some hundred solves for each of about six steps, and a solve for each
+/// mode, many columns at a time, each time the modes are renewed (two or three
+/// times); memory for 3.5 numbers of each element and mode, at most 1 GB.  The
+/// model is at the map afterwards.
 [[nodiscard]] SmoothMap FitSmoothMap(const MapProblem& problem,
                                      const FieldPrior& prior,
                                      const LevelFit& homogeneous);
 
 /// Returns ln of the evidence of the field of a map with another prior, up to a
-/// constant.  The modes of the map that count stand for S^T Pi S, in place of
-/// solves; what they leave out is alike for several priors, so that these can
-/// be compared.  O(n r^2) for r modes.  Preconditions: the model is at the map,
-/// which has this `prior` and some modes of k lambda >= 0.3.
+/// constant.  The modes of the map with k lambda >= 3 stand for S^T Pi S, in
+/// place of solves; they are the same for all priors that are compared.  O(n
+/// r^2) for r modes.  Preconditions: the model is at the map, which has this
+/// `prior`.
 [[nodiscard]] double LogEvidenceByModes(const MapProblem& problem,
                                         const FieldPrior& other,
                                         const FieldPrior& prior,
