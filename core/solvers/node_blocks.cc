@@ -69,7 +69,7 @@ BlockMatrix NodeBlocks::MatrixOf(const Eigen::VectorXd& values) const {
   matrix.entries.assign(column_.size() * std::size_t(size), 0);
   matrix.rest.assign(matrix.entries.size(), 0);
   VisitEntries(values, [&](Eigen::Index block, int i, int j, double value) {
-    const Eigen::Index at = block * size + j * Dimension() + i;
+    const Eigen::Index at = block * size + Eigen::Index{j} * Dimension() + i;
     matrix.entries[at] = static_cast<float>(value);
     matrix.rest[at] = static_cast<float>(value - double{matrix.entries[at]});
   });

@@ -225,7 +225,8 @@ BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
           result.entries.resize(result.entries.size() + size, 0);
         }
         const Eigen::Index at =
-            block * size + (columns[k] % block_columns) * block_rows + r;
+            block * size +
+            Eigen::Index{columns[k] % block_columns} * block_rows + r;
         result.entries[at] = static_cast<float>(values[k]);
       }
       Check(MatRestoreRow(matrix, first + r, &length, &columns, &values));

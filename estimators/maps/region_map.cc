@@ -201,6 +201,7 @@ class RegionSearch {
   std::vector<RegionMove> JointMoves(
       const std::vector<RegionMove>& candidates) const {
     std::vector<double> curvatures;
+    curvatures.reserve(candidates.size());
     for (const RegionMove& move : candidates) {
       curvatures.push_back(
           fit_.unknowns.Project(ResponseTo(move.element)).squaredNorm());
@@ -241,6 +242,7 @@ class RegionSearch {
     const double variance = Variance();
     std::vector<double> shares(candidates.size(), 0);
     std::vector<Eigen::VectorXf> changes;
+    changes.reserve(candidates.size());
     for (const RegionMove& move : candidates) {
       const Eigen::VectorXd change =
           DeltaOf(move) * fit_.unknowns.Project(ResponseTo(move.element));
