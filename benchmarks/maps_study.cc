@@ -91,6 +91,7 @@ double ErrorOfMap(const Eigen::VectorXd& log_moduli,
 // A smooth map of a measurement, from which the later stages go on.
 class MapRun {
  public:
+  explicit MapRun(const Scene&& scene) = delete;
   explicit MapRun(const Scene& scene)
       : model_(scene, SolverKind::kCholesky), prior_(scene.mesh) {
     const double start = ProcessorSeconds();
@@ -167,7 +168,8 @@ Table StagesTable(bool is_quick, Progress& progress) {
 
 void AddContrast(double radius, double noise, std::int64_t seed, Table& table) {
   const MapSpecimen specimen = Specimen(kCells, Inclusion(radius));
-  const MapRun run(WithNoise(specimen.scene, noise, seed));
+  const Scene scene = WithNoise(specimen.scene, noise, seed);
+  const MapRun run(scene);
   const Eigen::VectorXd lengths = run.Lengths();
   const Eigen::VectorXd& m = run.Smooth().state.log_moduli;
   const Eigen::ArrayXd inside =
@@ -210,7 +212,8 @@ Table TimeTable(bool is_quick, Progress& progress) {
     for (const double noise : {0.001, 0.003, 0.01, 0.03, 0.1}) {
       progress.Show("maps: time, " + std::to_string(cells * cells) +
                     " elements");
-      const MapRun run(WithNoise(specimen.scene, noise, 1));
+      const Scene scene = WithNoise(specimen.scene, noise, 1);
+      const MapRun run(scene);
       table.AddRow({std::int64_t{cells} * cells, noise,
                     run.Smooth().effective_number,
                     std::int64_t{run.Smooth().modes.Size()}, run.Seconds()});

@@ -41,11 +41,14 @@ void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
   const Eigen::Index most = std::min<Eigen::Index>(
       size, std::max<Eigen::Index>(
                 kFirstModes, Eigen::Index(kMostModeEntries / double(size))));
+  // All modes cost no more than the sums beside some of them.
+  const bool takes_all = size <= kLanczosSteps * kMostProbes;
   while (basis_.cols() < most && !HasWholeSpan() &&
          (Size() == 0 || values_(Size() - 1) > least)) {
     const Eigen::Index old = basis_.cols();
     const Eigen::Index more =
-        std::min(std::max(kFirstModes, old / 2), most - old);
+        takes_all ? size - old
+                  : std::min(std::max(kFirstModes, old / 2), most - old);
     std::mt19937_64 generator(old + 1);
     Eigen::MatrixXd columns = StandardNormal(size, more, generator);
     for (int i = 0; i < 2; ++i) {

@@ -25,7 +25,7 @@ Eigen::MatrixXd Decaying(Eigen::Index n) {
 }
 
 TEST(CurvatureModes, KnowDeterminantTraceAndInverse) {
-  constexpr Eigen::Index kSize = 300;
+  constexpr Eigen::Index kSize = 700;
   const Eigen::MatrixXd h = Decaying(kSize);
   CurvatureModes modes(kSize);
   Eigen::Index num_products = 0;
@@ -52,7 +52,7 @@ TEST(CurvatureModes, KnowDeterminantTraceAndInverse) {
 
 // With few modes kept, most of the effective number lies beside them.
 TEST(CurvatureModes, KnowWhatIsBesideThem) {
-  constexpr Eigen::Index kSize = 300;
+  constexpr Eigen::Index kSize = 700;
   const Eigen::MatrixXd h = Decaying(kSize);
   const ColumnOperator multiply = [&](const Eigen::MatrixXd& x) {
     return Eigen::MatrixXd(h * x);
