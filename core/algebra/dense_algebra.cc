@@ -21,7 +21,8 @@ namespace {
 // Smaller matrices gain nothing from LAPACK.
 constexpr Eigen::Index kLargeSymmetric = 100;
 
-Eigen::MatrixXd ProductBy(CBLAS_TRANSPOSE transposed, const Eigen::MatrixXd& a,
+Eigen::MatrixXd ProductBy(CBLAS_TRANSPOSE transposed,
+                          const Eigen::Ref<const Eigen::MatrixXd>& a,
                           const Eigen::MatrixXd& b) {
   const Eigen::Index num_rows = transposed == CblasTrans ? a.cols() : a.rows();
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(num_rows, b.cols());
@@ -31,10 +32,11 @@ Eigen::MatrixXd ProductBy(CBLAS_TRANSPOSE transposed, const Eigen::MatrixXd& a,
   if (b.cols() == 1) {
     // dgemm would copy A, which takes longer than the product.
     cblas_dgemv(CblasColMajor, transposed, int(a.rows()), int(a.cols()), 1,
-                a.data(), int(a.rows()), b.data(), 1, 0, product.data(), 1);
+                a.data(), int(a.outerStride()), b.data(), 1, 0, product.data(),
+                1);
   } else {
     cblas_dgemm(CblasColMajor, transposed, CblasNoTrans, int(num_rows),
-                int(b.cols()), int(b.rows()), 1, a.data(), int(a.rows()),
+                int(b.cols()), int(b.rows()), 1, a.data(), int(a.outerStride()),
                 b.data(), int(b.rows()), 0, product.data(), int(num_rows));
   }
   return product;
@@ -63,11 +65,12 @@ SymmetricEigenDecomposition DecomposeByLapack(Eigen::MatrixXd a) {
 
 }  // namespace
 
-Eigen::MatrixXd Product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+Eigen::MatrixXd Product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                        const Eigen::MatrixXd& b) {
   return ProductBy(CblasNoTrans, a, b);
 }
 
-Eigen::MatrixXd ProductOfTransposed(const Eigen::MatrixXd& a,
+Eigen::MatrixXd ProductOfTransposed(const Eigen::Ref<const Eigen::MatrixXd>& a,
                                     const Eigen::MatrixXd& b) {
   return ProductBy(CblasTrans, a, b);
 }

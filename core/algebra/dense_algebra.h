@@ -13,11 +13,11 @@ namespace elastimate {
 
 /// Returns A B, for m x k and k x n.  Large products are several times as fast
 /// by BLAS as by Eigen, which is compiled for any processor.
-[[nodiscard]] Eigen::MatrixXd Product(const Eigen::MatrixXd& a,
-                                      const Eigen::MatrixXd& b);
+[[nodiscard]] Eigen::MatrixXd Product(
+    const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b);
 /// Returns A^T B likewise, for k x m and k x n.
-[[nodiscard]] Eigen::MatrixXd ProductOfTransposed(const Eigen::MatrixXd& a,
-                                                  const Eigen::MatrixXd& b);
+[[nodiscard]] Eigen::MatrixXd ProductOfTransposed(
+    const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& b);
 
 /// A = Q R, with min(m, n) orthonormal columns in Q.
 struct QrDecomposition {

@@ -36,19 +36,10 @@ HWY_INLINE void GatherCorner(const CornerRows& rows, int corner, int p,
                              const double* values, Number (&of_corner)[3]) {
   const std::int64_t* const row = rows[corner] + p;
 #if ELASTIMATE_HAS_BATCHES
-  const auto load = [&](int k) HWY_ATTR {
-#if HWY_CAP_GE512
-    const hn::Half<Lanes> half;
-    return hn::Combine(Lanes(), LoadThree(half, values + row[k + 4]),
-                       LoadThree(half, values + row[k]));
-#else
-    return LoadThree(Lanes(), values + row[k]);
-#endif
-  };
-  const Rows components = Transpose({load(0), load(1), load(2), load(3)});
-  of_corner[0] = components.row0;
-  of_corner[1] = components.row1;
-  of_corner[2] = components.row2;
+  const Vector v = LoadThrees([&](int lane) { return values + row[lane]; });
+  of_corner[0] = v.x;
+  of_corner[1] = v.y;
+  of_corner[2] = v.z;
 #else
   const hn::RebindToSigned<PointLanes> integers;
   for (int i = 0; i < 3; ++i) {

@@ -404,20 +404,10 @@ HWY_INLINE void CollectNode(const double* record, const Columns&, double* h,
 // Fills a column in each lane; lanes beyond the last column repeat it.
 HWY_INLINE void FillDisplacement(const double* q, const Columns& columns,
                                  double* record, SeveralColumns layout) {
-  const auto column = [&](std::ptrdiff_t k) {
-    return q + std::min(k, columns.num_columns - 1) * columns.num_rows;
-  };
-  const auto row = [&](std::ptrdiff_t k) HWY_ATTR {
-#if HWY_CAP_GE512
-    const hn::Half<Lanes> half;
-    return hn::Combine(Lanes(), LoadThree(half, column(k + 4)),
-                       LoadThree(half, column(k)));
-#else
-    return LoadThree(Lanes(), column(k));
-#endif
-  };
-  const Rows components = Transpose({row(0), row(1), row(2), row(3)});
-  StoreColumns({components.row0, components.row1, components.row2},
+  StoreColumns(LoadThrees([&](std::ptrdiff_t k) {
+                 return q +
+                        std::min(k, columns.num_columns - 1) * columns.num_rows;
+               }),
                record + layout.kDisplacement);
 }
 

@@ -100,6 +100,22 @@ HWY_INLINE hn::Vec<D> LoadThree(D d, const double* p) {
   return hn::Combine(d, hn::Set(two, p[2]), hn::LoadU(two, p));
 }
 
+// Returns the three values at place(lane) for each lane.
+template <class Place>
+HWY_INLINE Vector LoadThrees(const Place& place) {
+  const auto row = [&](int k) HWY_ATTR {
+#if HWY_CAP_GE512
+    const hn::Half<Lanes> half;
+    return hn::Combine(Lanes(), LoadThree(half, place(k + 4)),
+                       LoadThree(half, place(k)));
+#else
+    return LoadThree(Lanes(), place(k));
+#endif
+  };
+  const Rows components = Transpose({row(0), row(1), row(2), row(3)});
+  return {components.row0, components.row1, components.row2};
+}
+
 // Sets three values to the first three of `v`, or adds these.
 template <bool kIsFirst, class V>
 HWY_INLINE void CollectThree(V v, double* p) {

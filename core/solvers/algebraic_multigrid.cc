@@ -81,7 +81,7 @@ bool AlgebraicMultigrid::SetUp() {
     restrictions_.push_back(Transposed(interpolation));
   }
   for (std::size_t i = 1; i < spaces_.matrices.size(); ++i) {
-    if (!AddSpace(spaces_.matrices[i], i - 1)) {
+    if (!AddSpace(spaces_.matrices[i])) {
       return false;
     }
   }
@@ -109,10 +109,10 @@ bool AlgebraicMultigrid::FactorizeCoarsest() {
          (coarsest_.vectorD().array() > 0).all();
 }
 
-// Adds the space of a matrix to the cycle, above a coarser one.
-bool AlgebraicMultigrid::AddSpace(const BlockMatrix& matrix,
-                                  std::size_t coarser) {
-  const bool is_finest = &matrix == &finest_;
+// Adds the space of a matrix to the cycle, above those that are there.
+bool AlgebraicMultigrid::AddSpace(const BlockMatrix& matrix) {
+  const std::size_t coarser = cycle_.size();
+  const bool is_finest = coarser + 1 == spaces_.interpolations.size();
   CycleSpace& space = cycle_.emplace_back();
   space.multiply = [&matrix](const Eigen::MatrixXd& x) {
     return Multiply(matrix, x);
@@ -150,7 +150,7 @@ bool AlgebraicMultigrid::TakeFinest() {
     return FactorizeCoarsest();
   }
   cycle_.resize(spaces_.matrices.size() - 1);
-  return AddSpace(finest_, spaces_.matrices.size() - 1);
+  return AddSpace(finest_);
 }
 
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(

@@ -43,7 +43,7 @@ class AlgebraicMultigrid : public LinearSolver {
  private:
   bool SetUp();
   bool FactorizeCoarsest();
-  bool AddSpace(const BlockMatrix& matrix, std::size_t coarser);
+  bool AddSpace(const BlockMatrix& matrix);
   bool TakeFinest();
   std::optional<Eigen::MatrixXd> SolveOnce(
       const Eigen::MatrixXd& right_hand_sides, double tolerance);

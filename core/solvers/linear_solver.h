@@ -19,9 +19,9 @@ class LinearSolver {
 
   /// Prepares the matrix of these values (in the order of the pattern) for
   /// Solve, which may read them again: they must stay as they are until the
-  /// next Factorize.  Returns false when that fails: the
-  /// matrix may be singular to working precision.  Throws std::bad_alloc when
-  /// there is not enough memory.
+  /// next Factorize.  Returns false when that fails: the matrix may be singular
+  /// to working precision.  Throws std::bad_alloc when there is not enough
+  /// memory.
   virtual bool Factorize(const Eigen::VectorXd& values) = 0;
 
   /// Returns the solution x for each column of `right_hand_sides`, size x n.

@@ -13,8 +13,7 @@ namespace elastimate {
 namespace {
 
 constexpr Eigen::Index kFirstModes = 64;
-// Three and a half matrices have at most so many entries each, which take 1 GB
-// in all.
+// Each of three matrices has at most so many entries, which take 0.8 GB in all.
 constexpr double kMostModeEntries = 3.5e7;
 // Random vectors for sums over what is beside the modes: as many as cost
 // little, since a sum of f has the variance 2 |f|^2 over their number.
@@ -76,7 +75,7 @@ void CurvatureModes::Renew(const ColumnOperator& multiply) {
 CurvatureModes CurvatureModes::OfRoot(const Eigen::MatrixXd& g) {
   CurvatureModes modes(g.rows());
   modes.TakeModesOf(g, 0);
-  modes.SetAccurate(modes.Size());
+  modes.num_accurate_ = modes.Size();
   return modes;
 }
 
@@ -132,7 +131,7 @@ LanczosSums CurvatureModes::BesideModes(const ColumnOperator& multiply,
 void CurvatureModes::MeasureRest(const ColumnOperator& multiply) {
   const Eigen::Index size = basis_.rows();
   rest_.reset();
-  SetAccurate(HasWholeSpan() ? Size() : (Size() + 1) / 2);
+  num_accurate_ = HasWholeSpan() ? Size() : (Size() + 1) / 2;
   if (!HasWholeSpan()) {
     std::mt19937_64 generator(0);
     rest_ = BesideModes(

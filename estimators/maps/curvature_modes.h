@@ -23,19 +23,14 @@ class CurvatureModes {
  public:
   /// Without modes: H ~ 0.
   explicit CurvatureModes(Eigen::Index size)
-      : basis_(size, 0),
-        products_(size, 0),
-        vectors_(size, 0),
-        values_(0),
-        accurate_vectors_(size, 0),
-        accurate_values_(0) {}
+      : basis_(size, 0), products_(size, 0), vectors_(size, 0), values_(0) {}
 
   /// Returns all modes of H = G G^T with n x r G.  O(n r^2).
   [[nodiscard]] static CurvatureModes OfRoot(const Eigen::MatrixXd& g);
 
   /// Enlarges the number of modes until the least lambda is below `least`, or
-  /// there are all or as many as memory is for (1 GB).  `multiply` is H.  Costs
-  /// a product for each mode and 160 to 640 for what is beside them, many
+  /// there are all or as many as memory is for (0.8 GB).  `multiply` is H.
+  /// Costs a product for each mode and 160 to 640 for what is beside them, many
   /// columns at once, and O(n r^2) for r modes.
   void AddUntil(double least, const ColumnOperator& multiply);
   /// Takes another H from now on, with as many modes.  Costs as above.
@@ -45,9 +40,9 @@ class CurvatureModes {
   /// Returns the modes that are accurate: all where H has no others, else the
   /// larger half.  Functions of H are summed over these, and by LanczosSums
   /// over the rest.  All modes together are the preconditioner.
-  const Eigen::MatrixXd& Vectors() const { return accurate_vectors_; }
+  auto Vectors() const { return vectors_.leftCols(num_accurate_); }
   /// Descending.
-  const Eigen::VectorXd& Values() const { return accurate_values_; }
+  auto Values() const { return values_.head(num_accurate_); }
   /// Whether nothing is beside the accurate modes.
   bool HasAll() const { return !rest_; }
 
@@ -76,11 +71,6 @@ class CurvatureModes {
   bool HasWholeSpan() const {
     return basis_.cols() == basis_.rows() || Size() < basis_.cols();
   }
-  // Takes so many of the modes for accurate ones.
-  void SetAccurate(Eigen::Index number) {
-    accurate_vectors_ = vectors_.leftCols(number);
-    accurate_values_ = values_.head(number);
-  }
   void MeasureRest(const ColumnOperator& multiply);
   Eigen::MatrixXd WithoutModes(const Eigen::MatrixXd& columns) const;
   // Takes the modes of G G^T - shift.
@@ -99,8 +89,7 @@ class CurvatureModes {
   Eigen::MatrixXd products_;  ///< H times these.
   Eigen::MatrixXd vectors_;
   Eigen::VectorXd values_;
-  Eigen::MatrixXd accurate_vectors_;
-  Eigen::VectorXd accurate_values_;
+  Eigen::Index num_accurate_ = 0;
   std::optional<LanczosSums> rest_;  ///< None where there are no others.
 };
 

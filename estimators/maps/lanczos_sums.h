@@ -9,8 +9,8 @@ namespace elastimate {
 
 /// The quadratic forms v^T f(H) v of some vectors v and a symmetric positive
 /// semidefinite H of which only products with vectors can be computed, for any
-/// smooth f.  Lanczos'
-/// method gives the nodes and weights of a Gauss quadrature,
+/// smooth f.  Lanczos' method gives the nodes and weights of a Gauss
+/// quadrature,
 ///
 ///   v^T f(H) v ~ sum_i w_i f(theta_i)
 ///

@@ -48,9 +48,7 @@ Eigen::VectorXd ResolvedBesideModes(const MapProblem& problem,
   constexpr int kNumTimes = 4;
   const FlatUnknowns unknowns(problem, map.state,
                               Eigen::MatrixXd::Ones(prior.NumElements(), 1));
-  const ColumnOperator curvature = [&](const Eigen::MatrixXd& y) {
-    return MultiplyByCurvature(problem, prior, unknowns, y);
-  };
+  const ColumnOperator curvature = CurvatureOf(problem, prior, unknowns);
   std::mt19937_64 generator(1);
   const Eigen::MatrixXd signs =
       StandardNormal(prior.NumElements(), kDraws, generator)
@@ -58,7 +56,7 @@ Eigen::VectorXd ResolvedBesideModes(const MapProblem& problem,
   const Eigen::MatrixXd y = prior.ApplyInverse(signs);
   ConjugateGradientOptions options;
   options.tolerance = kAccurateDraws;
-  const Eigen::MatrixXd& modes = map.modes.Vectors();
+  const auto modes = map.modes.Vectors();
   const Eigen::MatrixXd beside =
       map.modes.SolveFor(map.ratio, curvature, curvature(y), options) -
       Product(modes,
@@ -79,10 +77,7 @@ MapChanges ChangesOfMap(const MapProblem& problem, const FieldPrior& prior,
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
   const Eigen::MatrixXd y = map.modes.SolveFor(
-      map.ratio,
-      [&](const Eigen::MatrixXd& columns) {
-        return MultiplyByCurvature(problem, prior, unknowns, columns);
-      },
+      map.ratio, CurvatureOf(problem, prior, unknowns),
       prior.ApplyTransposed(model.MultiplyTransposed(unknowns.Project(rows))) +
           sources,
       options);

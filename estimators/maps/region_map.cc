@@ -162,10 +162,9 @@ class RegionSearch {
   // this, the best first, with lower bounds of their costs, without the
   // curvature, which takes a solve.  The model is at the fit.
   std::vector<RegionMove> PromisingMoves(double most) {
+    residual_ = fit_.unknowns.Project(problem_.model.Residual());
     const Eigen::VectorXd gradient =
-        -problem_.model.MultiplyTransposed(
-            fit_.unknowns.Project(problem_.model.Residual())) /
-        Variance();
+        -problem_.model.MultiplyTransposed(residual_) / Variance();
     std::vector<RegionMove> moves;
     for (int e = 0; e < int(regions_.size()); ++e) {
       for (int region = 0; region < int(fit_.levels.size()); ++region) {
@@ -203,12 +202,11 @@ class RegionSearch {
     std::vector<double> curvatures;
     curvatures.reserve(candidates.size());
     for (const RegionMove& move : candidates) {
-      curvatures.push_back(
-          fit_.unknowns.Project(ResponseTo(move.element)).squaredNorm());
+      curvatures.push_back(ProjectedResponse(move.element).squaredNorm());
     }
     std::vector<RegionMove> taken;
     std::vector<int> regions = regions_;
-    Eigen::VectorXd residual = fit_.unknowns.Project(problem_.model.Residual());
+    Eigen::VectorXd residual = residual_;
     bool has_gained = true;
     for (int sweep = 0; has_gained && sweep < kMostSweeps; ++sweep) {
       has_gained = false;
@@ -245,12 +243,10 @@ class RegionSearch {
     changes.reserve(candidates.size());
     for (const RegionMove& move : candidates) {
       const Eigen::VectorXd change =
-          DeltaOf(move) * fit_.unknowns.Project(ResponseTo(move.element));
+          DeltaOf(move) * ProjectedResponse(move.element);
       changes.push_back(change.cast<float>());
     }
-    const Eigen::VectorXd at_start =
-        fit_.unknowns.Project(problem_.model.Residual());
-    Eigen::VectorXf residual = at_start.cast<float>();
+    Eigen::VectorXf residual = residual_.cast<float>();
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         const double gain = double(residual.dot(changes[i])) -
@@ -291,13 +287,17 @@ class RegionSearch {
     return single;
   }
 
+  // Returns S e.
   Eigen::VectorXd ResponseTo(int element) const {
     return responses_.at(element).cast<double>();
   }
+  // Returns Pi S e.
+  Eigen::VectorXd ProjectedResponse(int element) const {
+    return fit_.unknowns.Project(ResponseTo(element));
+  }
 
   double CurvatureOf(int element) const {
-    return fit_.unknowns.Project(ResponseTo(element)).squaredNorm() /
-           Variance();
+    return ProjectedResponse(element).squaredNorm() / Variance();
   }
 
   // Solves for the responses S e to elements that are not there yet, and
@@ -385,6 +385,8 @@ class RegionSearch {
   std::vector<std::vector<int>> neighbours_;
   std::vector<int> regions_;
   LevelFit fit_;
+  // Pi r at the fit, where trials may have moved the model away since.
+  Eigen::VectorXd residual_;
   // S e, by elements, in single precision, as there are many.
   std::map<int, Eigen::VectorXf> responses_;
 };

@@ -107,6 +107,32 @@ class SharpPreconditioner {
   Eigen::MatrixXd solved_;  // (alpha R + shift)^-1 B inner^(-1/2).
 };
 
+// Returns the Gauss-Newton step of ln E, up to the level, for this alpha R. The
+// model is at the state.
+Eigen::VectorXd SharpStep(const MapProblem& problem,
+                          const FlatUnknowns& unknowns, const MapState& state,
+                          double variance,
+                          const Eigen::SparseMatrix<double>& curvature,
+                          const SharpPreconditioner& preconditioner) {
+  FieldSensitivity& model = problem.model;
+  const Eigen::VectorXd slope =
+      model.MultiplyTransposed(unknowns.Project(model.Residual())) / variance -
+      curvature * state.log_moduli;
+  ConjugateGradientOptions options;
+  options.tolerance = kAccurateSharp;
+  options.most_iterations = kMostSharpIterations;
+  return SolveByConjugateGradients(
+             [&](const Eigen::MatrixXd& x) {
+               return Eigen::MatrixXd(model.MultiplyTransposed(
+                                          unknowns.Project(model.Multiply(x))) /
+                                          variance +
+                                      curvature * x);
+             },
+             [&](const Eigen::MatrixXd& x) { return preconditioner(x); }, slope,
+             {}, options)
+      .solution;
+}
+
 }  // namespace
 
 MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
@@ -139,24 +165,9 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
     const Eigen::VectorXd residual = model.Residual();
     const Eigen::SparseMatrix<double> curvature =
         alpha * penalty.Curvature(state.log_moduli);
-    const Eigen::VectorXd slope =
-        model.MultiplyTransposed(unknowns.Project(residual)) / variance -
-        curvature * state.log_moduli;
     preconditioner.SetPenalty(curvature);
-    ConjugateGradientOptions options;
-    options.tolerance = kAccurateSharp;
-    options.most_iterations = kMostSharpIterations;
-    const Eigen::VectorXd field =
-        SolveByConjugateGradients(
-            [&](const Eigen::MatrixXd& x) {
-              return Eigen::MatrixXd(model.MultiplyTransposed(
-                                         unknowns.Project(model.Multiply(x))) /
-                                         variance +
-                                     curvature * x);
-            },
-            [&](const Eigen::MatrixXd& x) { return preconditioner(x); }, slope,
-            {}, options)
-            .solution;
+    const Eigen::VectorXd field = SharpStep(problem, unknowns, state, variance,
+                                            curvature, preconditioner);
     const Eigen::VectorXd flat =
         unknowns.Solve(residual - model.Multiply(field));
     const Eigen::VectorXd step = field + flat(0) * ones;

@@ -159,14 +159,32 @@ void FindRatio(const FieldEvidence& evidence, bool stays,
   }
 }
 
+// Returns the change of y at the k of the map, and sets what this tells.
+Eigen::VectorXd SolveForChange(const FieldEvidence& evidence,
+                               double homogeneous_square_sum,
+                               const ColumnOperator& curvature,
+                               SmoothMap& map) {
+  ConjugateGradientOptions options;
+  options.tolerance = kAccurateSmooth;
+  options.most_iterations = 500;
+  const Eigen::VectorXd delta = map.modes.SolveFor(
+      map.ratio, curvature, evidence.SlopeAt(map.ratio), options);
+  const double q = evidence.QuadraticAt(map.ratio, delta);
+  map.variance = evidence.problem.Variance(q, evidence.degrees_of_freedom);
+  map.effective_number = map.modes.EffectiveNumber(map.ratio);
+  map.log_evidence =
+      (evidence.Of(0, homogeneous_square_sum) - evidence.Of(map.ratio, q)) / 2;
+  return delta;
+}
+
 }  // namespace
 
-Eigen::MatrixXd MultiplyByCurvature(const MapProblem& problem,
-                                    const FieldPrior& prior,
-                                    const FlatUnknowns& unknowns,
-                                    const Eigen::MatrixXd& y) {
-  return prior.ApplyTransposed(problem.model.MultiplyTransposed(
-      unknowns.Project(problem.model.Multiply(prior.Apply(y)))));
+ColumnOperator CurvatureOf(const MapProblem& problem, const FieldPrior& prior,
+                           const FlatUnknowns& unknowns) {
+  return [&](const Eigen::MatrixXd& y) {
+    return prior.ApplyTransposed(problem.model.MultiplyTransposed(
+        unknowns.Project(problem.model.Multiply(prior.Apply(y)))));
+  };
 }
 
 SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
@@ -183,9 +201,7 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
   double change_since_modes = 0;
   for (int i = 0;; ++i) {
     const FlatUnknowns unknowns(problem, map.state, ones);
-    const ColumnOperator curvature = [&](const Eigen::MatrixXd& y) {
-      return MultiplyByCurvature(problem, prior, unknowns, y);
-    };
+    const ColumnOperator curvature = CurvatureOf(problem, prior, unknowns);
     const Eigen::VectorXd residual = model.Residual();
     map.square_sum = residual.squaredNorm();
     const Eigen::VectorXd data = unknowns.Project(residual);
@@ -204,18 +220,8 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
       change_since_modes = 0;
     }
     FindRatio(evidence, i > kMostRatios, curvature, map);
-    ConjugateGradientOptions options;
-    options.tolerance = kAccurateSmooth;
-    options.most_iterations = 500;
-    const Eigen::VectorXd delta = map.modes.SolveFor(
-        map.ratio, curvature, evidence.SlopeAt(map.ratio), options);
-    const double q = evidence.QuadraticAt(map.ratio, delta);
-    map.variance = problem.Variance(q, evidence.degrees_of_freedom);
-    map.effective_number = map.modes.EffectiveNumber(map.ratio);
-    map.log_evidence =
-        (evidence.Of(0, homogeneous.square_sum) - evidence.Of(map.ratio, q)) /
-        2;
-
+    const Eigen::VectorXd delta =
+        SolveForChange(evidence, homogeneous.square_sum, curvature, map);
     const Eigen::VectorXd field = prior.Apply(delta);
     const Eigen::VectorXd flat =
         unknowns.Solve(residual - model.Multiply(field));

@@ -26,11 +26,11 @@ struct SmoothMap {
   CurvatureModes modes;  ///< Of H at the state.
 };
 
-/// H = A^T S^T Pi S A, where the model is; `unknowns` are those of that state.
-[[nodiscard]] Eigen::MatrixXd MultiplyByCurvature(const MapProblem& problem,
-                                                  const FieldPrior& prior,
-                                                  const FlatUnknowns& unknowns,
-                                                  const Eigen::MatrixXd& y);
+/// Returns H = A^T S^T Pi S A, where the model is; `unknowns` are those of that
+/// state.  All arguments must outlive it.
+[[nodiscard]] ColumnOperator CurvatureOf(const MapProblem& problem,
+                                         const FieldPrior& prior,
+                                         const FlatUnknowns& unknowns);
 
 /// Fits the field of the FieldPrior and the flat unknowns (level of ln E, nu)
 /// from the fit of a homogeneous body on.  Gauss-Newton steps solve
@@ -50,8 +50,8 @@ struct SmoothMap {
 /// from the modes and, beside them, from LanczosSums.  Cost: a factorisation
 /// and some hundred solves for each of about six steps, and a solve for each
 /// mode, many columns at a time, each time the modes are renewed (two or three
-/// times); memory for 3.5 numbers of each element and mode, at most 1 GB.  The
-/// model is at the map afterwards.
+/// times); memory for three numbers of each element and mode, at most 0.8 GB.
+/// The model is at the map afterwards.
 [[nodiscard]] SmoothMap FitSmoothMap(const MapProblem& problem,
                                      const FieldPrior& prior,
                                      const LevelFit& homogeneous);
