@@ -47,33 +47,47 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   return basis;
 }
 
-// The elements around some nodes, as a mesh of its own.
+// So many nodes, one behind the other, are the inner nodes of a patch.
+constexpr Eigen::Index kNodesPerPatch = 8192;
+
+// Returns the elements with an inner node in each patch.
+std::vector<std::vector<int>> ElementsOfPatches(const Mesh& mesh) {
+  std::vector<std::vector<int>> elements(
+      (mesh.NumNodes() - 1) / kNodesPerPatch + 1);
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    for (const int corner : mesh.elements.col(e)) {
+      std::vector<int>& of_patch = elements[corner / kNodesPerPatch];
+      if (of_patch.empty() || of_patch.back() != int(e)) {
+        of_patch.push_back(int(e));
+      }
+    }
+  }
+  return elements;
+}
+
+// Some elements as a mesh of its own.
 struct Patch {
   Mesh mesh;
   /// The node in the whole mesh of each node of the patch.
   std::vector<Eigen::Index> nodes;
 };
 
-Patch ElementsAround(const Mesh& mesh, Eigen::Index first_node,
-                     Eigen::Index end_node) {
-  std::vector<Eigen::Index> elements;
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const auto corners = mesh.elements.col(e).array();
-    if ((corners >= first_node && corners < end_node).any()) {
-      elements.push_back(e);
-    }
-  }
+// `place` has -1 for each node of the mesh, before and afterwards.
+Patch PatchOf(const Mesh& mesh, const std::vector<int>& elements,
+              std::vector<int>& place) {
   Patch patch;
   patch.mesh.kind = mesh.kind;
   patch.mesh.section = mesh.section;
   patch.mesh.elements = mesh.elements(Eigen::all, elements);
-  std::vector<int> place(mesh.NumNodes(), -1);
   for (int& corner : patch.mesh.elements.reshaped()) {
     if (place[corner] < 0) {
       place[corner] = static_cast<int>(patch.nodes.size());
       patch.nodes.push_back(corner);
     }
     corner = place[corner];
+  }
+  for (const Eigen::Index node : patch.nodes) {
+    place[node] = -1;
   }
   patch.mesh.nodes = mesh.nodes(Eigen::all, patch.nodes);
   return patch;
@@ -112,19 +126,18 @@ Eigen::MatrixXd RowsOf(const std::vector<Eigen::MatrixXd>& polynomials,
 Eigen::MatrixXd StiffenedTriangle(
     const Mesh& mesh, const Supports& supports,
     const std::vector<Eigen::MatrixXd>& polynomials) {
-  constexpr Eigen::Index kNodesPerPatch = 8192;
   const Eigen::Index columns = NumColumns(polynomials);
   RowBlockQr qr(2 * columns);
-  for (Eigen::Index first = 0; first < mesh.NumNodes();
-       first += kNodesPerPatch) {
-    const Eigen::Index end = std::min(first + kNodesPerPatch, mesh.NumNodes());
-    const Patch patch = ElementsAround(mesh, first, end);
+  const std::vector<std::vector<int>> elements = ElementsOfPatches(mesh);
+  std::vector<int> place(mesh.NumNodes(), -1);
+  for (Eigen::Index p = 0; p < Eigen::Index(elements.size()); ++p) {
+    const Patch patch = PatchOf(mesh, elements[p], place);
     const StiffnessProducts products =
         MultiplyStiffnessBasis(patch.mesh, RowsOf(polynomials, patch.nodes));
     for (std::size_t n = 0; n < patch.nodes.size(); ++n) {
       const Eigen::Index node = patch.nodes[n];
       for (int i = 0; i < mesh.Dimension(); ++i) {
-        if (node >= first && node < end && !supports.held(i, node)) {
+        if (node / kNodesPerPatch == p && !supports.held(i, node)) {
           const Eigen::Index row = mesh.Dimension() * Eigen::Index(n) + i;
           qr.NextRow() << products.h.row(row), products.j.row(row);
         }
