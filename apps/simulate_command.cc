@@ -108,15 +108,17 @@ Solution SolveLargeStrains(const std::string& source, const Scene& modelled,
                                      : Eigen::MatrixXd()};
 }
 
-Solution Solve(const std::string& source, const Scene& modelled,
-               SolverKind solver, Progress& progress,
-               std::vector<std::string>& notices) {
+/// Solves in the last of these spaces, which are given as to Equilibrium.
+Solution Solve(const std::string& source,
+               const std::vector<const Scene*>& spaces, SolverKind solver,
+               Progress& progress, std::vector<std::string>& notices) {
+  const Scene& modelled = *spaces.back();
   progress.Show("factorising");
   if (HasLargeStrainLaw(modelled.materials)) {
     return SolveLargeStrains(source, modelled, solver, progress);
   }
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
-  Equilibrium model(modelled, solver);
+  Equilibrium model(spaces, solver);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
   if (!model.Solve(moduli)) {
     throw std::invalid_argument(
@@ -307,9 +309,13 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   RequireKnownSupports(source, scene);
   const std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(source, scene, reading.notices);
-  const Scene& modelled = quadratic ? *quadratic : scene;
+  std::vector<const Scene*> spaces = {&scene};
+  if (quadratic) {
+    spaces.push_back(&*quadratic);
+  }
+  const Scene& modelled = *spaces.back();
   const Solution solution =
-      Solve(source, modelled, solver, *progress, reading.notices);
+      Solve(source, spaces, solver, *progress, reading.notices);
   const std::string forces = ForcesOfDisplacedSupports(modelled, solution);
   if (quadratic && !HasNodalForcesOnly(scene) && !WritesTable()) {
     reading.notices.push_back(

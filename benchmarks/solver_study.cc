@@ -196,7 +196,7 @@ Measurement MeasureSolver(const Body& body, const std::string& solver) {
       [&] { Require(linear_solver->Factorize(values), solver); });
   const auto iterations_of = [&](double tolerance) {
     const int before = linear_solver->NumIterations();
-    Require(linear_solver->Solve(force, tolerance).has_value(), solver);
+    Require(linear_solver->Solve(force, tolerance, {}).has_value(), solver);
     return linear_solver->NumIterations() - before;
   };
   measured.iterations = iterations_of(kTolerance);

@@ -28,8 +28,8 @@ class AssembledStiffness : public SupportedStiffness {
 
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                        const Eigen::MatrixXd& /*start*/) override {
-    return Solver().Solve(all);
+                        const Eigen::MatrixXd& start) override {
+    return Solver().Solve(all, StiffnessSolver::kAccurate, start);
   }
 
   Eigen::MatrixXd HeldForces(

@@ -108,6 +108,7 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   // moduli of at most 1.
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
+  directions_.resize(0, 0);
   values_->SetModuli(scaled, stiffness_[0]->GraphOfAssembled());
   for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
     if (!stiffness->Factorize(*values_, has_unknown_motion_)) {
@@ -141,6 +142,9 @@ void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
 }
 
 Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
+  if (directions_.size() > 0 && directions_ == directions) {
+    return sensitivities_;
+  }
   const Eigen::Index n = directions.cols();
   Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
   const bool has_start = sensitivities_.cols() == sensitivities.cols();
@@ -152,9 +156,8 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
             has_start ? Eigen::MatrixXd(sensitivities_.middleCols(n * k, n))
                       : Eigen::MatrixXd());
   }
-  if (IsRefined()) {
-    sensitivities_ = sensitivities;
-  }
+  directions_ = directions;
+  sensitivities_ = sensitivities;
   return sensitivities;
 }
 
@@ -202,6 +205,7 @@ Eigen::MatrixXd Equilibrium::ExtendInCase(Eigen::Index k,
 }
 
 bool Equilibrium::MoveSupports(const Eigen::MatrixXd& held) {
+  directions_.resize(0, 0);
   displacement_ += Extend(held);
   return true;
 }

@@ -68,7 +68,8 @@ class Equilibrium : public ForwardModel {
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
   const Eigen::MatrixXd& SupportResponse() const { return support_response_; }
 
-  /// A pass and n solves for each load case.
+  /// A pass and n solves for each load case, unless it is asked again, as
+  /// searches within bounds do.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
   /// A solve for each column.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
@@ -142,8 +143,10 @@ class Equilibrium : public ForwardModel {
   std::vector<Eigen::Index> first_held_alike_;
   Eigen::MatrixXd displacement_;
   Eigen::MatrixXd support_response_;
-  /// The last sensitivities, with which iterations begin.
+  /// The last sensitivities, with which iterations begin, and their directions,
+  /// which are empty once the displacement is another one.
   Eigen::MatrixXd sensitivities_;
+  Eigen::MatrixXd directions_;
   double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.
   bool has_unknown_motion_;
   int element_passes_ = 0;

@@ -154,20 +154,26 @@ bool AlgebraicMultigrid::TakeFinest() {
 }
 
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
-    const Eigen::MatrixXd& right_hand_sides, double tolerance) {
+    const Eigen::MatrixXd& right_hand_sides, double tolerance,
+    const Eigen::MatrixXd& start) {
   std::optional<Eigen::MatrixXd> solution =
-      SolveOnce(right_hand_sides, tolerance);
+      SolveOnce(right_hand_sides, tolerance, start);
   if (!solution && !are_spaces_of_matrix_ && SetUp()) {
-    solution = SolveOnce(right_hand_sides, tolerance);
+    solution = SolveOnce(right_hand_sides, tolerance, start);
   }
   return solution;
 }
 
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
-    const Eigen::MatrixXd& right_hand_sides, double tolerance) {
-  Eigen::MatrixXd forces =
-      Eigen::MatrixXd::Zero(finest_.NumRows(), right_hand_sides.cols());
-  forces(row_of_free_, Eigen::all) = right_hand_sides;
+    const Eigen::MatrixXd& right_hand_sides, double tolerance,
+    const Eigen::MatrixXd& start) {
+  const auto in_blocks = [this](const Eigen::MatrixXd& of_free) {
+    Eigen::MatrixXd rows =
+        Eigen::MatrixXd::Zero(finest_.NumRows(), of_free.cols());
+    rows(row_of_free_, Eigen::all) = of_free;
+    return rows;
+  };
+  const Eigen::MatrixXd forces = in_blocks(right_hand_sides);
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
   const double digits = std::clamp(-std::log10(tolerance), 1.0, 16.0);
@@ -187,7 +193,7 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
             },
             x);
       },
-      forces, {}, options);
+      forces, start.size() > 0 ? in_blocks(start) : start, options);
   num_iterations_ += result.iterations;
   if (!result.has_converged) {
     are_spaces_slow_ = true;

@@ -36,7 +36,8 @@ class AlgebraicMultigrid : public LinearSolver {
 
   bool Factorize(const Eigen::VectorXd& values) override;
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
-                                       double tolerance) override;
+                                       double tolerance,
+                                       const Eigen::MatrixXd& start) override;
   int NumIterations() const override { return num_iterations_; }
   int NumSetUps() const override { return num_set_ups_; }
 
@@ -46,7 +47,8 @@ class AlgebraicMultigrid : public LinearSolver {
   bool AddSpace(const BlockMatrix& matrix);
   bool TakeFinest();
   std::optional<Eigen::MatrixXd> SolveOnce(
-      const Eigen::MatrixXd& right_hand_sides, double tolerance);
+      const Eigen::MatrixXd& right_hand_sides, double tolerance,
+      const Eigen::MatrixXd& start);
 
   NodeBlocks blocks_;
   std::vector<int> row_of_free_;

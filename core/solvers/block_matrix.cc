@@ -195,13 +195,16 @@ Eigen::MatrixXd MultiplyInParallel(const BlockMatrix& a,
                                    const Eigen::MatrixXd& x,
                                    const MultiplyRows& multiply_rows) {
   assert(x.rows() == a.num_columns);
-  // A thread takes about as long to start as so many rows to multiply.
-  constexpr Eigen::Index kRowsAtOnce = 2000;
+  // A thread takes about as long to start as so many entries to multiply.  Rows
+  // of coarse spaces are few, but long.
+  constexpr std::size_t kFewEntries = 200000;
+  constexpr Eigen::Index kMostParts = 64;
   Eigen::MatrixXd products(a.NumRows(), x.cols());
   const Eigen::Index num_rows = a.NumBlockRows();
-#pragma omp parallel for schedule(static) if (num_rows > kRowsAtOnce)
-  for (Eigen::Index begin = 0; begin < num_rows; begin += kRowsAtOnce) {
-    multiply_rows(a, begin, std::min(num_rows, begin + kRowsAtOnce), x,
+  const Eigen::Index rows_at_once = num_rows / kMostParts + 1;
+#pragma omp parallel for schedule(static) if (a.entries.size() > kFewEntries)
+  for (Eigen::Index begin = 0; begin < num_rows; begin += rows_at_once) {
+    multiply_rows(a, begin, std::min(num_rows, begin + rows_at_once), x,
                   products);
   }
   return products;

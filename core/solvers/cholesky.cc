@@ -118,7 +118,7 @@ bool Cholesky::FactorHasTheEnergyOf(const Eigen::VectorXd& values) {
   std::mt19937_64 generator(20071107);
   const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(
       pattern.Size(), [&] { return (generator() & 1U) != 0 ? 1.0 : -1.0; });
-  const Eigen::VectorXd x = *Solve(b, 0);
+  const Eigen::VectorXd x = *Solve(b, 0, {});
   const Eigen::Map<
       const Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>>
       matrix(pattern.Size(), pattern.Size(), values.size(),
@@ -130,7 +130,8 @@ bool Cholesky::FactorHasTheEnergyOf(const Eigen::VectorXd& values) {
 }
 
 std::optional<Eigen::MatrixXd> Cholesky::Solve(
-    const Eigen::MatrixXd& right_hand_sides, double /*tolerance*/) {
+    const Eigen::MatrixXd& right_hand_sides, double /*tolerance*/,
+    const Eigen::MatrixXd& /*start*/) {
   if (right_hand_sides.cols() == 0) {
     return right_hand_sides;  // CHOLMOD refuses.
   }

@@ -39,7 +39,8 @@ class Cholesky : public LinearSolver {
   bool Factorize(const Eigen::VectorXd& values) override;
 
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
-                                       double tolerance) override;
+                                       double tolerance,
+                                       const Eigen::MatrixXd& start) override;
 
   /// Returns the floating-point operations of a factorisation.
   double FactorizationFlops() const;

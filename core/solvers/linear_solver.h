@@ -26,11 +26,13 @@ class LinearSolver {
 
   /// Returns the solution x for each column of `right_hand_sides`, size x n.
   /// Its error is at most `tolerance` |x| in the energy norm |x|^2 = x^T A x; a
-  /// direct solver does as well as it can.  Empty when the tolerance was not
-  /// reached.
+  /// direct solver does as well as it can.  Iterations begin with `start`,
+  /// which is empty or has a guess of each column, scaled in any way.  Empty
+  /// when the tolerance was not reached.
   /// Precondition: the last Factorize returned true.
   virtual std::optional<Eigen::MatrixXd> Solve(
-      const Eigen::MatrixXd& right_hand_sides, double tolerance) = 0;
+      const Eigen::MatrixXd& right_hand_sides, double tolerance,
+      const Eigen::MatrixXd& start) = 0;
 
   /// Returns the iterations of all columns until now; 0 for a direct solver.
   virtual int NumIterations() const { return 0; }

@@ -102,13 +102,16 @@ void StiffnessSolver::FallBackToCholesky(const std::string& why) {
 }
 
 Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
-                                       double tolerance) {
+                                       double tolerance,
+                                       const Eigen::MatrixXd& start) {
   work_.solves += static_cast<int>(all.cols());
   const Eigen::MatrixXd right_hand_sides = degrees_of_freedom_.Restrict(all);
+  const Eigen::MatrixXd free_start =
+      start.size() > 0 ? degrees_of_freedom_.Restrict(start) : start;
   const int iterations_before = solver_->NumIterations();
   const int set_ups_before = solver_->NumSetUps();
   std::optional<Eigen::MatrixXd> solution =
-      solver_->Solve(right_hand_sides, tolerance);
+      solver_->Solve(right_hand_sides, tolerance, free_start);
   work_.iterations += solver_->NumIterations() - iterations_before;
   work_.multigrid_set_ups += solver_->NumSetUps() - set_ups_before;
   if (!solution && is_multigrid_) {
@@ -120,7 +123,7 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
     }
     FallBackToCholesky(why.str());
     if (FactorizeValues()) {
-      solution = solver_->Solve(right_hand_sides, tolerance);
+      solution = solver_->Solve(right_hand_sides, tolerance, free_start);
     }
   }
   if (!solution) {

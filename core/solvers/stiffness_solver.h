@@ -71,11 +71,13 @@ class StiffnessSolver {
   [[nodiscard]] bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
 
   /// Returns A^-1 times the free rows of each column of `all` (num_dofs x n),
-  /// and zeros in the held rows.  Where multigrid does not converge, A is
-  /// factorised from then on; when that shows that it is singular, the solution
-  /// is NaN.  Precondition: the last factorisation succeeded.
+  /// and zeros in the held rows.  `start` is that of LinearSolver::Solve. Where
+  /// multigrid does not converge, A is factorised from then on; when that shows
+  /// that it is singular, the solution is NaN.  Precondition: the last
+  /// factorisation succeeded.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                        double tolerance = kAccurate);
+                        double tolerance = kAccurate,
+                        const Eigen::MatrixXd& start = {});
 
   /// Returns nu of the present factorisation; NaN when there is none, or when
   /// it is of blocks.

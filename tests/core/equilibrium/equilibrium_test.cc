@@ -232,6 +232,37 @@ TEST_P(EquilibriumOfKinds, CountsItsWork) {
   ExpectWork(equilibrium, 5, 1, 3 + 2 * 4);
 }
 
+// The same sensitivities cost nothing, and no others pass for them.
+TEST_P(EquilibriumOfKinds, SolvesForSensitivitiesOnce) {
+  scene_.supports.unknown = scene_.supports.held;
+  Equilibrium equilibrium(scene_, SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
+  const Eigen::VectorXd moduli = chart.Moduli(parameters_);
+  ASSERT_TRUE(equilibrium.Solve(moduli));
+  const Eigen::MatrixXd first = equilibrium.Sensitivities(directions);
+  const int solves = equilibrium.WorkDone().solves;
+  EXPECT_EQ(equilibrium.Sensitivities(directions), first);
+  EXPECT_EQ(equilibrium.WorkDone().solves, solves);
+  const auto expect_those_of_another_model = [&](const Eigen::MatrixXd& of,
+                                                 const Eigen::VectorXd& at,
+                                                 const Eigen::MatrixXd& held) {
+    Equilibrium other(scene_, SolverKind::kCholesky);
+    ASSERT_TRUE(other.Solve(at) && other.MoveSupports(held));
+    const Eigen::MatrixXd expected = other.Sensitivities(of);
+    EXPECT_GT((expected - first).norm(), 1e-3 * expected.norm());
+    EXPECT_LT((equilibrium.Sensitivities(of) - expected).norm(),
+              1e-10 * expected.norm());
+  };
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(first.rows(), 2);
+  expect_those_of_another_model(2 * directions, moduli, held);
+  ASSERT_TRUE(equilibrium.Solve(3 * moduli));
+  expect_those_of_another_model(directions, 3 * moduli, held);
+  held = RandomOfHeld(scene_, 2);
+  ASSERT_TRUE(equilibrium.MoveSupports(held));
+  expect_those_of_another_model(directions, 3 * moduli, held);
+}
+
 TEST(Equilibrium, SaysWhyTheSupportsDoNotHold) {
   Scene scene =
       testing::SceneOfKind({ElementKind::kTet4, SectionModel::kSolid});

@@ -52,11 +52,11 @@ class SparseCholesky : public ::testing::Test {
         eigenvalues(eigenvalues.size() - 1) / eigenvalues(0);
     const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 4, 1);
     const Eigen::MatrixXd expected = testing::SolveDensely(dense, b) / scale;
-    const Eigen::MatrixXd solution = *cholesky_.Solve(b, 0);
+    const Eigen::MatrixXd solution = *cholesky_.Solve(b, 0, {});
     EXPECT_LT((solution - expected).norm(),
               1e-15 * condition * 10 * expected.norm())
         << "nu " << nu << ", condition " << condition;
-    EXPECT_LT((*cholesky_.Solve(b.col(2), 0) - solution.col(2)).norm(),
+    EXPECT_LT((*cholesky_.Solve(b.col(2), 0, {}) - solution.col(2)).norm(),
               1e-15 * condition * 10 * solution.col(2).norm());
   }
 
@@ -83,7 +83,7 @@ TEST_F(SparseCholesky, DoesNotDependOnUnits) {
 TEST_F(SparseCholesky, SolvesForNoRightHandSide) {
   ASSERT_TRUE(cholesky_.Factorize(assembly_.Combine(0.3)));
   const Eigen::MatrixXd none =
-      *cholesky_.Solve(Eigen::MatrixXd(dofs_.NumFree(), 0), 0);
+      *cholesky_.Solve(Eigen::MatrixXd(dofs_.NumFree(), 0), 0, {});
   EXPECT_EQ(none.rows(), dofs_.NumFree());
   EXPECT_EQ(none.cols(), 0);
 }
@@ -91,10 +91,10 @@ TEST_F(SparseCholesky, SolvesForNoRightHandSide) {
 TEST_F(SparseCholesky, GivesTheSameBitsAgain) {
   const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 1, 2);
   ASSERT_TRUE(cholesky_.Factorize(assembly_.Combine(0.3)));
-  const Eigen::MatrixXd first = *cholesky_.Solve(b, 0);
+  const Eigen::MatrixXd first = *cholesky_.Solve(b, 0, {});
   ASSERT_TRUE(cholesky_.Factorize(assembly_.Combine(0.4)));
   ASSERT_TRUE(cholesky_.Factorize(assembly_.Combine(0.3)));
-  EXPECT_EQ(*cholesky_.Solve(b, 0), first);
+  EXPECT_EQ(*cholesky_.Solve(b, 0, {}), first);
 }
 
 TEST_F(SparseCholesky, RefusesWhatIsNotPositiveDefiniteAndRecovers) {
@@ -144,7 +144,7 @@ TEST(Cholesky, OfASingleDegreeOfFreedom) {
   Cholesky cholesky(assembly, dofs);
   ASSERT_TRUE(cholesky.Factorize(assembly.H()));
   const Eigen::MatrixXd b = Eigen::MatrixXd::Constant(1, 1, 3.0);
-  EXPECT_NEAR((*cholesky.Solve(b, 0))(0), 3 / assembly.H()(0), 1e-14);
+  EXPECT_NEAR((*cholesky.Solve(b, 0, {}))(0), 3 / assembly.H()(0), 1e-14);
 }
 
 }  // namespace

@@ -74,11 +74,11 @@ TEST_P(SolvedTwice, AgreesInEnergyToTheTolerance) {
     const Eigen::VectorXd values = assembly_.Combine(nu);
     ASSERT_TRUE(cholesky_.Factorize(values));
     ASSERT_TRUE(multigrid_->Factorize(values));
-    const Eigen::MatrixXd exact = *cholesky_.Solve(b, 0);
+    const Eigen::MatrixXd exact = *cholesky_.Solve(b, 0, {});
     for (const double tolerance : {1e-3, 1e-8}) {
       const int before = multigrid_->NumIterations();
       const std::optional<Eigen::MatrixXd> solution =
-          multigrid_->Solve(b, tolerance);
+          multigrid_->Solve(b, tolerance, {});
       ASSERT_TRUE(solution) << "nu " << nu << ", tolerance " << tolerance;
       EXPECT_LE(multigrid_->NumIterations() - before, 2 * 100);
       for (int k = 0; k < 2; ++k) {
@@ -97,8 +97,9 @@ TEST_P(SolvedTwice, KeepsItsSpacesWhileTheyServe) {
   const auto error_of_solution = [&](const Eigen::VectorXd& values) {
     EXPECT_TRUE(cholesky_.Factorize(values));
     EXPECT_TRUE(multigrid_->Factorize(values));
-    const Eigen::VectorXd exact = *cholesky_.Solve(b, 0);
-    const std::optional<Eigen::MatrixXd> solution = multigrid_->Solve(b, 1e-6);
+    const Eigen::VectorXd exact = *cholesky_.Solve(b, 0, {});
+    const std::optional<Eigen::MatrixXd> solution =
+        multigrid_->Solve(b, 1e-6, {});
     return solution ? std::sqrt(Energy(values, solution->col(0) - exact) /
                                 Energy(values, exact))
                     : std::numeric_limits<double>::infinity();
@@ -112,26 +113,50 @@ TEST_P(SolvedTwice, KeepsItsSpacesWhileTheyServe) {
   EXPECT_EQ(multigrid_->NumSetUps(), 2);
 }
 
+TEST_P(SolvedTwice, BeginsWithAGuessOfAnyScaleAndQuality) {
+  const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 2, 5);
+  const Eigen::VectorXd values = assembly_.Combine(0.3);
+  ASSERT_TRUE(cholesky_.Factorize(values));
+  ASSERT_TRUE(multigrid_->Factorize(values));
+  const Eigen::MatrixXd exact = *cholesky_.Solve(b, 0, {});
+  const auto iterations_from = [&](const Eigen::MatrixXd& start) {
+    const int before = multigrid_->NumIterations();
+    const Eigen::MatrixXd solution = *multigrid_->Solve(b, 1e-8, start);
+    for (Eigen::Index k = 0; k < b.cols(); ++k) {
+      EXPECT_LE(Energy(values, solution.col(k) - exact.col(k)),
+                1e-16 * Energy(values, exact.col(k)));
+    }
+    return multigrid_->NumIterations() - before;
+  };
+  const int from_zero = iterations_from({});
+  const Eigen::MatrixXd near =
+      1e5 * (exact + 1e-5 * exact.cwiseAbs().maxCoeff() *
+                         RandomMatrix(exact.rows(), exact.cols(), 6));
+  EXPECT_LT(iterations_from(near), 0.8 * from_zero);
+  EXPECT_LE(iterations_from(RandomMatrix(exact.rows(), exact.cols(), 7)),
+            1.5 * from_zero);
+}
+
 TEST_P(SolvedTwice, RunsTwiceAlike) {
   const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 1, 2);
   const Eigen::VectorXd values = assembly_.Combine(0.3);
   ASSERT_TRUE(multigrid_->Factorize(values));
-  const Eigen::MatrixXd first = *multigrid_->Solve(b, 1e-6);
+  const Eigen::MatrixXd first = *multigrid_->Solve(b, 1e-6, {});
   ASSERT_TRUE(multigrid_->Factorize(values));
-  EXPECT_EQ(*multigrid_->Solve(b, 1e-6), first);
+  EXPECT_EQ(*multigrid_->Solve(b, 1e-6, {}), first);
   const std::unique_ptr<LinearSolver> other =
       MakeMultigrid(scene_.mesh, assembly_, dofs_);
   ASSERT_TRUE(other->Factorize(values));
-  EXPECT_EQ(*other->Solve(b, 1e-6), first);
+  EXPECT_EQ(*other->Solve(b, 1e-6, {}), first);
 }
 
 TEST_P(SolvedTwice, SolvesForZeroAndForNothing) {
   const Eigen::VectorXd values = assembly_.Combine(0.3);
   ASSERT_TRUE(multigrid_->Factorize(values));
   const Eigen::Index n = dofs_.NumFree();
-  EXPECT_EQ(*multigrid_->Solve(Eigen::VectorXd::Zero(n), 1e-6),
+  EXPECT_EQ(*multigrid_->Solve(Eigen::VectorXd::Zero(n), 1e-6, {}),
             Eigen::MatrixXd(Eigen::VectorXd::Zero(n)));
-  EXPECT_EQ(multigrid_->Solve(Eigen::MatrixXd(n, 0), 1e-6)->cols(), 0);
+  EXPECT_EQ(multigrid_->Solve(Eigen::MatrixXd(n, 0), 1e-6, {})->cols(), 0);
 }
 
 TEST_P(SolvedTwice, RefusesValuesThatAreNotFinite) {
@@ -145,11 +170,11 @@ TEST_P(SolvedTwice, SaysWhenItDoesNotConverge) {
   // Not positive definite.
   const Eigen::VectorXd bad = assembly_.Combine(1.5);
   if (multigrid_->Factorize(bad)) {
-    EXPECT_FALSE(multigrid_->Solve(b, 1e-6));
+    EXPECT_FALSE(multigrid_->Solve(b, 1e-6, {}));
   }
   const Eigen::VectorXd good = assembly_.Combine(0.3);
   ASSERT_TRUE(multigrid_->Factorize(good));
-  EXPECT_TRUE(multigrid_->Solve(b, 1e-6));
+  EXPECT_TRUE(multigrid_->Solve(b, 1e-6, {}));
 }
 
 // Whatever was in the memory that it gets: bytes of all ones, as here, are not
@@ -160,7 +185,7 @@ TEST_P(SolvedTwice, EndsForAMatrixThatIsNotPositive) {
     const Eigen::VectorXd values = assembly_.Combine(nu);
     if (multigrid_->Factorize(values)) {
       EXPECT_FALSE(
-          multigrid_->Solve(RandomMatrix(dofs_.NumFree(), 1, 3), 1e-6));
+          multigrid_->Solve(RandomMatrix(dofs_.NumFree(), 1, 3), 1e-6, {}));
     }
   }
   mallopt(M_PERTURB, 0);
@@ -187,8 +212,8 @@ TEST(Multigrid, SolvesForOneTetrahedron) {
   ASSERT_TRUE(cholesky.Factorize(values));
   ASSERT_TRUE(multigrid->Factorize(values));
   const Eigen::MatrixXd b = Eigen::Vector3d(1, -2, 3);
-  EXPECT_TRUE(
-      multigrid->Solve(b, 1e-10)->isApprox(*cholesky.Solve(b, 0), 1e-10));
+  EXPECT_TRUE(multigrid->Solve(b, 1e-10, {})
+                  ->isApprox(*cholesky.Solve(b, 0, {}), 1e-10));
 }
 
 }  // namespace
