@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,7 @@
 #include "benchmarks/trial.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/estimators/force_balance/local_map.h"
 #include "elastimate/estimators/maps/estimate_map.h"
 #include "elastimate/estimators/maps/field_prior.h"
@@ -40,28 +42,69 @@ struct MapSpecimen {
   Eigen::VectorXd log_moduli;
 };
 
-// Returns a unit square that is held at x = 0 and pulled, without noise.
+Eigen::VectorXd LogModuliOf(const Mesh& mesh, const LogModulus& log_modulus) {
+  Eigen::VectorXd log_moduli(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    log_moduli(e) = log_modulus(ElementCentre(mesh, e));
+  }
+  return log_moduli;
+}
+
+// Returns E and nu of each element, one behind the other.
+Eigen::VectorXd ParametersOf(const Eigen::VectorXd& log_moduli,
+                             double poisson_ratio) {
+  Eigen::VectorXd parameters(2 * log_moduli.size());
+  for (Eigen::Index e = 0; e < log_moduli.size(); ++e) {
+    parameters.segment<2>(2 * e) << std::exp(log_moduli(e)), poisson_ratio;
+  }
+  return parameters;
+}
+
+// Returns a rectangle that is held at x = 0 and pulled, as its own elements
+// compute it, without noise.
+MapSpecimen ComputedSpecimen(const RectangleOptions& options,
+                             double poisson_ratio,
+                             const LogModulus& log_modulus) {
+  MapSpecimen specimen;
+  specimen.scene = RectangleScene(options);
+  specimen.log_moduli = LogModuliOf(specimen.scene.mesh, log_modulus);
+  Scene truth = WithMaterialOfEachElement(specimen.scene);
+  MeasureMaterials(ParametersOf(specimen.log_moduli, poisson_ratio), truth);
+  specimen.scene.load_cases[0].displacement = truth.load_cases[0].displacement;
+  specimen.scene.origin = Origin::kComputed;
+  return specimen;
+}
+
 MapSpecimen Specimen(int cells, const LogModulus& log_modulus) {
   RectangleOptions options;
   options.cells = {cells, cells};
   options.size = {1, 1};
   options.force = {1, -0.2};
   options.section = {SectionModel::kPlaneStrain, 1};
+  return ComputedSpecimen(options, kPoissonRatioOfMaps, log_modulus);
+}
+
+// Returns the same as quadratic elements of half of the size compute it, whose
+// materials are those of their own centres.
+MapSpecimen MeasuredSpecimen(RectangleOptions options, double poisson_ratio,
+                             const LogModulus& log_modulus) {
   MapSpecimen specimen;
   specimen.scene = RectangleScene(options);
-  const Mesh& mesh = specimen.scene.mesh;
-  const Eigen::Index n = mesh.NumElements();
-  specimen.log_moduli.resize(n);
-  Eigen::VectorXd parameters(2 * n);
-  for (Eigen::Index e = 0; e < n; ++e) {
-    specimen.log_moduli(e) = log_modulus(ElementCentre(mesh, e));
-    parameters.segment<2>(2 * e) << std::exp(specimen.log_moduli(e)),
-        kPoissonRatioOfMaps;
+  specimen.log_moduli = LogModuliOf(specimen.scene.mesh, log_modulus);
+  const Eigen::Vector2i nodes = options.cells.array() + 1;
+  options.cells *= 2;
+  const Scene finer = RectangleScene(options);
+  Scene truth = FinerScene(WithMaterialOfEachElement(finer));
+  MeasureMaterials(
+      ParametersOf(LogModuliOf(finer.mesh, log_modulus), poisson_ratio), truth);
+  const Eigen::MatrixXd& displacement = truth.load_cases[0].displacement;
+  specimen.scene.load_cases[0].displacement.resize(2, nodes.prod());
+  for (int j = 0; j < nodes.y(); ++j) {
+    for (int i = 0; i < nodes.x(); ++i) {
+      specimen.scene.load_cases[0].displacement.col(i + j * nodes.x()) =
+          displacement.col(2 * i + 2 * j * (options.cells.x() + 1));
+    }
   }
-  Scene truth = WithMaterialOfEachElement(specimen.scene);
-  MeasureMaterials(parameters, truth);
-  specimen.scene.load_cases[0].displacement = truth.load_cases[0].displacement;
-  specimen.scene.origin = Origin::kComputed;
   return specimen;
 }
 
@@ -222,11 +265,94 @@ Table TimeTable(bool is_quick, Progress& progress) {
   return table;
 }
 
+// The example of OpenQSEI (D. Smyl, S. Bossuyt, D. Liu, OpenQSEI: a MATLAB
+// package for quasi static elasticity imaging, SoftwareX 7, 2018) with a soft
+// rectangle in a plate.  Its supports and forces are in a file of MATLAB;
+// here one end is held and the other pulled.
+MapSpecimen PlateWithSoftRectangle(double contrast) {
+  RectangleOptions options;
+  options.cells = {20, 20};
+  options.size = {10, 10};
+  options.force = {1, 0};
+  options.kind = ElementKind::kTri3;
+  options.section = {SectionModel::kPlaneStress, 0.05};
+  return ComputedSpecimen(options, 0.35, [=](const Eigen::Vector2d& point) {
+    const bool is_inside =
+        (point.array() >= 2.25).all() && (point.array() <= 4.75).all();
+    return is_inside ? std::log(300 / contrast) : std::log(300.0);
+  });
+}
+
+// The phantoms of E. L. Madsen et al., Tissue-mimicking agar/gelatin materials
+// for use in heterogeneous elastography phantoms, Phys. Med. Biol. 50, 2005:
+// cubes of 9 cm with a cylinder of 2 cm in diameter, across its axis.
+MapSpecimen PhantomWithCylinder(double contrast) {
+  RectangleOptions options;
+  options.cells = {27, 27};
+  options.size = {90, 90};
+  options.force = {-10, 0};
+  options.section = {SectionModel::kPlaneStrain, 1};
+  return MeasuredSpecimen(options, 0.495, [=](const Eigen::Vector2d& point) {
+    return (point - Eigen::Vector2d(45, 45)).norm() < 10
+               ? std::log(20 * contrast)
+               : std::log(20.0);
+  });
+}
+
+void AddPhantom(const std::string& specimen_name, double contrast,
+                const MapSpecimen& specimen, double noise, std::int64_t seed,
+                Table& table) {
+  const MapEstimate map =
+      EstimateMap(WithNoise(specimen.scene, noise, seed), {});
+  const auto unknown = std::numeric_limits<double>::quiet_NaN();
+  MapRegion softest = {unknown, unknown, unknown, unknown, false};
+  MapRegion stiffest = softest;
+  if (!map.regions.empty()) {
+    softest = map.regions.front();
+    stiffest = map.regions.back();
+  }
+  table.AddRow({specimen_name, contrast, noise, seed,
+                std::string(MapVerdictName(map.verdict)),
+                std::int64_t(map.regions.size()),
+                std::exp(specimen.log_moduli.minCoeff()),
+                softest.youngs_modulus, softest.standard_error, softest.volume,
+                std::exp(specimen.log_moduli.maxCoeff()),
+                stiffest.youngs_modulus, stiffest.standard_error,
+                stiffest.volume,
+                std::int64_t{softest.is_resolved && stiffest.is_resolved}});
+}
+
+Table PhantomsTable(bool is_quick, Progress& progress) {
+  Table table(
+      "maps_phantoms",
+      {"specimen", "contrast [1]", "displacement_deviation [1]", "noise_seed",
+       "verdict", "regions [1]", "softest_true [kPa]", "softest [kPa]",
+       "softest_standard_error [kPa]", "softest_area [length^2]",
+       "stiffest_true [kPa]", "stiffest [kPa]", "stiffest_standard_error [kPa]",
+       "stiffest_area [length^2]", "are_resolved [1]"});
+  progress.Show("maps: phantoms");
+  const auto add = [&](const std::string& name, double contrast,
+                       const MapSpecimen& specimen, double noise) {
+    for (std::int64_t seed = 1; seed <= (is_quick ? 1 : kMapTrials); ++seed) {
+      AddPhantom(name, contrast, specimen, noise, seed, table);
+    }
+  };
+  for (const double contrast : {3.0, 300.0}) {
+    add("plate", contrast, PlateWithSoftRectangle(contrast), 0.003);
+  }
+  for (const double contrast : {1.5, 4.6}) {
+    for (const double noise : {0.001, 0.01}) {
+      add("phantom", contrast, PhantomWithCylinder(contrast), noise);
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
 StudyResult RunMapsStudy(bool is_quick, Progress& progress) {
   return {{StagesTable(is_quick, progress), ContrastTable(is_quick, progress),
-           TimeTable(is_quick, progress)},
+           TimeTable(is_quick, progress), PhantomsTable(is_quick, progress)},
           {{"square",
             "1 x 1 in plane strain, of 16 x 16 quadrilaterals unless the table "
             "says otherwise, held at x = 0, with the force (1, -0.2) on the "

@@ -88,8 +88,15 @@ class RegionSearch {
         regions_(std::move(regions)),
         fit_(std::move(fit)) {}
 
-  void Improve() {
+  // Moves elements until that gains nothing, or until the criterion would stay
+  // above `most` even if all rounds that are left gained as much as the last.
+  void Improve(double most) {
+    double gain = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kMostRegionRounds; ++round) {
+      const double criterion = Criterion();
+      if (criterion - (kMostRegionRounds - round) * gain >= most) {
+        return;
+      }
       const std::vector<RegionMove> moves = PromisingMoves(0);
       // Some moves gain together only, and where the linearised model is far
       // off, moves that each gain by themselves may still do.
@@ -97,6 +104,7 @@ class RegionSearch {
           !TakeSome(SingleMoves(moves))) {
         return;
       }
+      gain = criterion - Criterion();
     }
   }
 
@@ -425,7 +433,7 @@ std::optional<RegionMap> FitRegions(const MapProblem& problem,
       continue;
     }
     RegionSearch search(problem, prior, regions, *fit);
-    search.Improve();
+    search.Improve(least);
     if (search.Criterion() < least) {
       least = search.Criterion();
       best = search.Result();
