@@ -20,7 +20,7 @@ constexpr int kMostSweeps = 50;
 constexpr Eigen::Index kRowsForEach = 3;
 // So many responses are kept at a time, which bounds their memory, and so many
 // solved for together.
-constexpr std::size_t kMostMoves = 2000;
+constexpr std::size_t kMostMoves = 1000;
 constexpr std::size_t kColumns = 64;
 // An element whose move costs so much, in -ln of the posterior, stays with a
 // probability of 99.8 %, and is left out.
@@ -88,23 +88,14 @@ class RegionSearch {
         regions_(std::move(regions)),
         fit_(std::move(fit)) {}
 
-  // Moves elements until that gains nothing, or until the criterion would stay
-  // above `most` even if all rounds that are left gained as much as the last.
-  void Improve(double most) {
-    double gain = std::numeric_limits<double>::infinity();
+  void Improve() {
     for (int round = 0; round < kMostRegionRounds; ++round) {
-      const double criterion = Criterion();
-      if (criterion - (kMostRegionRounds - round) * gain >= most) {
-        return;
-      }
       const std::vector<RegionMove> moves = PromisingMoves(0);
       // Some moves gain together only, and where the linearised model is far
       // off, moves that each gain by themselves may still do.
-      if (!TakeSome(JointMoves(moves)) && !TakeSome(RelaxedMoves(moves)) &&
-          !TakeSome(SingleMoves(moves))) {
+      if (!TakeSome(RelaxedMoves(moves)) && !TakeSome(SingleMoves(moves))) {
         return;
       }
-      gain = criterion - Criterion();
     }
   }
 
@@ -201,43 +192,6 @@ class RegionSearch {
                           : n / 2 *
                                 std::log(std::max(
                                     square_sum, n * kLeastNoise * kLeastNoise));
-  }
-
-  // Returns moves that together lower the criterion of the linearised model, in
-  // the order in which each of them lowers it.
-  std::vector<RegionMove> JointMoves(
-      const std::vector<RegionMove>& candidates) const {
-    std::vector<double> curvatures;
-    curvatures.reserve(candidates.size());
-    for (const RegionMove& move : candidates) {
-      curvatures.push_back(ProjectedResponse(move.element).squaredNorm());
-    }
-    std::vector<RegionMove> taken;
-    std::vector<int> regions = regions_;
-    Eigen::VectorXd residual = residual_;
-    bool has_gained = true;
-    for (int sweep = 0; has_gained && sweep < kMostSweeps; ++sweep) {
-      has_gained = false;
-      for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const RegionMove& move = candidates[i];
-        if (regions[move.element] == move.region) {
-          continue;
-        }
-        const Eigen::VectorXd response = ResponseTo(move.element);
-        const double delta =
-            fit_.levels(move.region) - fit_.levels(regions[move.element]);
-        const double square_sum = residual.squaredNorm();
-        const double next = square_sum - 2 * delta * residual.dot(response) +
-                            curvatures[i] * delta * delta;
-        if (GrowthOf(move, regions) + MisfitOf(next) < MisfitOf(square_sum)) {
-          residual -= delta * fit_.unknowns.Project(response);
-          regions[move.element] = move.region;
-          taken.push_back(move);
-          has_gained = true;
-        }
-      }
-    }
-    return taken;
   }
 
   // Returns the moves of which more than a half is taken, most of it first,
@@ -433,7 +387,7 @@ std::optional<RegionMap> FitRegions(const MapProblem& problem,
       continue;
     }
     RegionSearch search(problem, prior, regions, *fit);
-    search.Improve(least);
+    search.Improve();
     if (search.Criterion() < least) {
       least = search.Criterion();
       best = search.Result();
