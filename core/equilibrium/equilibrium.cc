@@ -28,6 +28,7 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
 Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
                          SolverKind solver, double tolerance)
     : values_(std::make_unique<NestedStiffness>(UsedSpaces(spaces))),
+      mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
       has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
@@ -46,9 +47,6 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       ++first;
     }
     first_held_alike_.push_back(first);
-  }
-  if (IsRefined()) {
-    graph_.emplace(scene.mesh);
   }
 }
 
@@ -98,7 +96,13 @@ const InternalForces& Equilibrium::Forces() const {
 }
 
 const NodeGraph& Equilibrium::Graph() const {
-  return graph_ ? *graph_ : stiffness_[0]->GraphOfAssembled();
+  if (!IsRefined()) {
+    return stiffness_[0]->GraphOfAssembled();
+  }
+  if (!graph_) {
+    graph_.emplace(*mesh_);
+  }
+  return *graph_;
 }
 
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }

@@ -134,8 +134,9 @@ class Equilibrium : public ForwardModel {
 
   std::unique_ptr<NestedStiffness> values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
-  /// The graph of the finest mesh where its stiffness is not assembled.
-  std::optional<NodeGraph> graph_;
+  const Mesh* mesh_;  ///< The finest one.
+  /// Its graph where its stiffness is not assembled, once it is asked for.
+  mutable std::optional<NodeGraph> graph_;
   std::vector<std::size_t> stiffness_of_case_;
   Eigen::MatrixXd load_;
   Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
