@@ -108,7 +108,7 @@ Solution SolveLargeStrains(const std::string& source, const Scene& modelled,
                                      : Eigen::MatrixXd()};
 }
 
-/// Solves in the last of these spaces, which are given as to Equilibrium.
+/// Solves in the last of some spaces, which go from coarse to fine.
 Solution Solve(const std::string& source,
                const std::vector<const Scene*>& spaces, SolverKind solver,
                Progress& progress, std::vector<std::string>& notices) {

@@ -1,6 +1,7 @@
 #include "benchmarks/maps_study.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -84,8 +85,9 @@ MapSpecimen Specimen(int cells, const LogModulus& log_modulus) {
   return ComputedSpecimen(options, kPoissonRatioOfMaps, log_modulus);
 }
 
-// Returns the same as quadratic elements of half of the size compute it, whose
-// materials are those of their own centres.
+// Returns such a rectangle with the displacements that quadratic elements of
+// half of the size compute, because a specimen is finer than its mesh.  Each of
+// these has the modulus at its own centre.
 MapSpecimen MeasuredSpecimen(RectangleOptions options, double poisson_ratio,
                              const LogModulus& log_modulus) {
   MapSpecimen specimen;
@@ -267,8 +269,8 @@ Table TimeTable(bool is_quick, Progress& progress) {
 
 // The example of OpenQSEI (D. Smyl, S. Bossuyt, D. Liu, OpenQSEI: a MATLAB
 // package for quasi static elasticity imaging, SoftwareX 7, 2018) with a soft
-// rectangle in a plate.  Its supports and forces are in a file of MATLAB;
-// here one end is held and the other pulled.
+// rectangle in a plate.  One end is held and the other pulled, as the supports
+// and forces of the example are not described.
 MapSpecimen PlateWithSoftRectangle(double contrast) {
   RectangleOptions options;
   options.cells = {20, 20};
@@ -285,7 +287,8 @@ MapSpecimen PlateWithSoftRectangle(double contrast) {
 
 // The phantoms of E. L. Madsen et al., Tissue-mimicking agar/gelatin materials
 // for use in heterogeneous elastography phantoms, Phys. Med. Biol. 50, 2005:
-// cubes of 9 cm with a cylinder of 2 cm in diameter, across its axis.
+// cubes of 9 cm with a cylinder of 2 cm in diameter.  The specimen is the
+// section across its axis.
 MapSpecimen PhantomWithCylinder(double contrast) {
   RectangleOptions options;
   options.cells = {27, 27};
@@ -304,22 +307,25 @@ void AddPhantom(const std::string& specimen_name, double contrast,
                 Table& table) {
   const MapEstimate map =
       EstimateMap(WithNoise(specimen.scene, noise, seed), {});
+  const bool is_resolved = std::none_of(
+      map.findings.begin(), map.findings.end(), [](const Finding& finding) {
+        return finding.code == FindingCode::kNotResolved;
+      });
   const auto unknown = std::numeric_limits<double>::quiet_NaN();
   MapRegion softest = {unknown, unknown, unknown, unknown, false};
   MapRegion stiffest = softest;
-  if (!map.regions.empty()) {
+  if (map.IsUsable() && !map.regions.empty()) {
     softest = map.regions.front();
     stiffest = map.regions.back();
   }
-  table.AddRow({specimen_name, contrast, noise, seed,
-                std::string(MapVerdictName(map.verdict)),
-                std::int64_t(map.regions.size()),
-                std::exp(specimen.log_moduli.minCoeff()),
-                softest.youngs_modulus, softest.standard_error, softest.volume,
-                std::exp(specimen.log_moduli.maxCoeff()),
-                stiffest.youngs_modulus, stiffest.standard_error,
-                stiffest.volume,
-                std::int64_t{softest.is_resolved && stiffest.is_resolved}});
+  table.AddRow(
+      {specimen_name, contrast, noise, seed,
+       map.IsUsable() ? std::string(MapVerdictName(map.verdict)) : "not usable",
+       std::int64_t(map.regions.size()),
+       std::exp(specimen.log_moduli.minCoeff()), softest.youngs_modulus,
+       softest.standard_error, softest.volume,
+       std::exp(specimen.log_moduli.maxCoeff()), stiffest.youngs_modulus,
+       stiffest.standard_error, stiffest.volume, std::int64_t{is_resolved}});
 }
 
 Table PhantomsTable(bool is_quick, Progress& progress) {
@@ -327,9 +333,9 @@ Table PhantomsTable(bool is_quick, Progress& progress) {
       "maps_phantoms",
       {"specimen", "contrast [1]", "displacement_deviation [1]", "noise_seed",
        "verdict", "regions [1]", "softest_true [kPa]", "softest [kPa]",
-       "softest_standard_error [kPa]", "softest_area [length^2]",
+       "softest_standard_error [kPa]", "softest_volume [length^3]",
        "stiffest_true [kPa]", "stiffest [kPa]", "stiffest_standard_error [kPa]",
-       "stiffest_area [length^2]", "are_resolved [1]"});
+       "stiffest_volume [length^3]", "is_resolved [1]"});
   progress.Show("maps: phantoms");
   const auto add = [&](const std::string& name, double contrast,
                        const MapSpecimen& specimen, double noise) {
@@ -361,6 +367,15 @@ StudyResult RunMapsStudy(bool is_quick, Progress& progress) {
             "E = 5 in a disc about the middle, of the radius 0.2 unless the "
             "table says otherwise, E = 1 around it"},
            {"gradient", "ln E = ln 3 (y - 0.5) + 0.3 sin 2 pi x"},
+           {"plate",
+            "10 x 10 x 0.05 in plane stress, of 800 triangles, held at x = 0, "
+            "with the force (1, 0) on the other end; E = 300, and 300 / "
+            "contrast where both coordinates are 2.25 to 4.75; nu = 0.35"},
+           {"phantom",
+            "90 x 90 in plane strain, of 27 x 27 quadrilaterals, held at x = "
+            "0, with the force (-10, 0) on the other end; E = 20, and 20 "
+            "contrast in a disc of the diameter 20 about the middle; nu = "
+            "0.495; measured by quadratic elements of half of the size"},
            {"noise", "uniform, at all nodes"},
            {"noise_seeds", "1 to the number of trials; in maps_time 1"}}};
 }

@@ -146,12 +146,14 @@ void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
 }
 
 Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
-  if (directions_.size() > 0 && directions_ == directions) {
+  if (directions_.size() > 0 && directions_.cols() == directions.cols() &&
+      directions_ == directions) {
     return sensitivities_;
   }
   const Eigen::Index n = directions.cols();
   Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
   const bool has_start = sensitivities_.cols() == sensitivities.cols();
+  directions_.resize(0, 0);
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
     sensitivities.middleCols(n * k, n) =
@@ -160,8 +162,8 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
             has_start ? Eigen::MatrixXd(sensitivities_.middleCols(n * k, n))
                       : Eigen::MatrixXd());
   }
-  directions_ = directions;
   sensitivities_ = sensitivities;
+  directions_ = directions;
   return sensitivities;
 }
 

@@ -25,6 +25,9 @@ class SupportedStiffness;
 /// in each load case, and its sensitivities du / d theta_k = -K^-1 K_k u.  Load
 /// cases that hold the same degrees of freedom share a factor.
 ///
+/// Iterations begin with the last displacements and sensitivities, so that what
+/// they find depends, within their tolerance, on what was solved for before.
+///
 ///   Equilibrium model(scene, SolverKind::kAutomatic);
 ///   const MaterialParameters& chart = model.Forces().Parameters();
 ///   if (model.Solve(chart.Moduli(parameters))) {
@@ -68,8 +71,9 @@ class Equilibrium : public ForwardModel {
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
   const Eigen::MatrixXd& SupportResponse() const { return support_response_; }
 
-  /// A pass and n solves for each load case, unless it is asked again, as
-  /// searches within bounds do.
+  /// A pass and n solves for each load case; nothing where the directions are
+  /// those of the last call and neither moduli nor supports have changed since,
+  /// because searches within bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
   /// A solve for each column.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
@@ -135,7 +139,8 @@ class Equilibrium : public ForwardModel {
   std::unique_ptr<NestedStiffness> values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
   const Mesh* mesh_;  ///< The finest one.
-  /// Its graph where its stiffness is not assembled, once it is asked for.
+  /// The graph of that mesh where its stiffness is not assembled.  As it takes
+  /// much memory, it is made when Graph is first called.
   mutable std::optional<NodeGraph> graph_;
   std::vector<std::size_t> stiffness_of_case_;
   Eigen::MatrixXd load_;
@@ -145,7 +150,7 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd displacement_;
   Eigen::MatrixXd support_response_;
   /// The last sensitivities, with which iterations begin, and their directions,
-  /// which are empty once the displacement is another one.
+  /// which are empty where the displacement has changed.
   Eigen::MatrixXd sensitivities_;
   Eigen::MatrixXd directions_;
   double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.

@@ -69,7 +69,7 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
                                         const Eigen::MatrixXd& start) {
   work_.solves += static_cast<int>(all.cols());
   if (finest_) {
-    return finest_->Solve(all);
+    return finest_->Solve(all, StiffnessSolver::kAccurate, start);
   }
   const std::size_t finest = is_free_.size() - 1;
   const Eigen::VectorXd& is_free = is_free_[finest];

@@ -93,7 +93,6 @@ bool AlgebraicMultigrid::SetUp() {
   are_spaces_of_matrix_ = true;
   are_spaces_slow_ = false;
   iterations_per_digit_ = 0;
-  smallest_eigenvalue_ = 1;
   return true;
 }
 
@@ -204,10 +203,12 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
       (forces.colwise().squaredNorm().array() > 0).count();
   const double per_digit =
       result.iterations / (digits * std::max(double(num_columns), 1.0));
-  if (are_spaces_of_matrix_ || iterations_per_digit_ == 0) {
+  if (!are_spaces_of_matrix_ && iterations_per_digit_ > 0) {
+    are_spaces_slow_ =
+        are_spaces_slow_ || per_digit > kMostSlowdown * iterations_per_digit_;
+  } else if (start.size() == 0) {
+    // With a good guess, few iterations tell nothing of the spaces.
     iterations_per_digit_ = std::max(iterations_per_digit_, per_digit);
-  } else if (per_digit > kMostSlowdown * iterations_per_digit_) {
-    are_spaces_slow_ = true;
   }
   return result.solution(row_of_free_, Eigen::all);
 }

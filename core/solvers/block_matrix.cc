@@ -195,10 +195,10 @@ Eigen::MatrixXd MultiplyInParallel(const BlockMatrix& a,
                                    const Eigen::MatrixXd& x,
                                    const MultiplyRows& multiply_rows) {
   assert(x.rows() == a.num_columns);
-  // A thread takes about as long to start as so many entries to multiply.  Rows
-  // of coarse spaces are few, but long.
+  // To start the threads takes about as long as to multiply so many entries,
+  // which are counted because coarse spaces have few but long rows.
   constexpr std::size_t kFewEntries = 200000;
-  constexpr Eigen::Index kMostParts = 64;
+  constexpr Eigen::Index kMostParts = 512;
   Eigen::MatrixXd products(a.NumRows(), x.cols());
   const Eigen::Index num_rows = a.NumBlockRows();
   const Eigen::Index rows_at_once = num_rows / kMostParts + 1;

@@ -106,8 +106,9 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
                                        const Eigen::MatrixXd& start) {
   work_.solves += static_cast<int>(all.cols());
   const Eigen::MatrixXd right_hand_sides = degrees_of_freedom_.Restrict(all);
-  const Eigen::MatrixXd free_start =
-      start.size() > 0 ? degrees_of_freedom_.Restrict(start) : start;
+  const Eigen::MatrixXd free_start = is_multigrid_ && start.size() > 0
+                                         ? degrees_of_freedom_.Restrict(start)
+                                         : Eigen::MatrixXd();
   const int iterations_before = solver_->NumIterations();
   const int set_ups_before = solver_->NumSetUps();
   std::optional<Eigen::MatrixXd> solution =

@@ -71,9 +71,10 @@ class StiffnessSolver {
   [[nodiscard]] bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
 
   /// Returns A^-1 times the free rows of each column of `all` (num_dofs x n),
-  /// and zeros in the held rows.  `start` is that of LinearSolver::Solve. Where
-  /// multigrid does not converge, A is factorised from then on; when that shows
-  /// that it is singular, the solution is NaN.  Precondition: the last
+  /// and zeros in the held rows.  `start` is empty or has a guess of each
+  /// column (num_dofs x n), scaled in any way, with which iterations begin.
+  /// Where multigrid does not converge, A is factorised from then on; when that
+  /// shows that it is singular, the solution is NaN.  Precondition: the last
   /// factorisation succeeded.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         double tolerance = kAccurate,

@@ -47,10 +47,10 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   return basis;
 }
 
-// So many nodes, one behind the other, are the inner nodes of a patch.
+// A patch has so many inner nodes, whose numbers follow each other.
 constexpr Eigen::Index kNodesPerPatch = 8192;
 
-// Returns the elements with an inner node in each patch.
+// Returns, for each patch, the elements that have one of its inner nodes.
 std::vector<std::vector<int>> ElementsOfPatches(const Mesh& mesh) {
   std::vector<std::vector<int>> elements(
       (mesh.NumNodes() - 1) / kNodesPerPatch + 1);
@@ -72,7 +72,8 @@ struct Patch {
   std::vector<Eigen::Index> nodes;
 };
 
-// `place` has -1 for each node of the mesh, before and afterwards.
+// `place` has -1 for each node of the mesh and is left so, because to fill it
+// anew for each patch would take as long as to visit the whole mesh.
 Patch PatchOf(const Mesh& mesh, const std::vector<int>& elements,
               std::vector<int>& place) {
   Patch patch;

@@ -13,7 +13,8 @@ namespace elastimate {
 namespace {
 
 constexpr Eigen::Index kFirstModes = 64;
-// Each of three matrices has at most so many entries, which take 0.8 GB in all.
+// Each of three matrices has at most so many entries, which take 0.8 GB in all,
+// or those of the first modes where a mesh has more than 547 000 elements.
 constexpr double kMostModeEntries = 3.5e7;
 // Random vectors for sums over what is beside the modes: as many as cost
 // little, since a sum of f has the variance 2 |f|^2 over their number.

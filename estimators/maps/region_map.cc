@@ -91,8 +91,8 @@ class RegionSearch {
   void Improve() {
     for (int round = 0; round < kMostRegionRounds; ++round) {
       const std::vector<RegionMove> moves = PromisingMoves(0);
-      // Some moves gain together only, and where the linearised model is far
-      // off, moves that each gain by themselves may still do.
+      // Some moves gain only together.  Where that fails because the linearised
+      // model is far off, moves that gain by themselves may still do.
       if (!TakeSome(RelaxedMoves(moves)) && !TakeSome(SingleMoves(moves))) {
         return;
       }
@@ -347,7 +347,7 @@ class RegionSearch {
   std::vector<std::vector<int>> neighbours_;
   std::vector<int> regions_;
   LevelFit fit_;
-  // Pi r at the fit, where trials may have moved the model away since.
+  // Pi r at the fit, kept because refused trials leave the model elsewhere.
   Eigen::VectorXd residual_;
   // S e, by elements, in single precision, as there are many.
   std::map<int, Eigen::VectorXf> responses_;

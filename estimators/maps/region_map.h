@@ -31,10 +31,12 @@ struct RegionMap {
 ///   g delta + h delta^2 / 2 + change of the number of facets < 0,
 ///
 /// with g the gradient and h the curvature of |r|^2 / (2 sigma^2) by ln E of
-/// the element and delta its change.  Elements move one by one.  After each
-/// move, the residual and the boundary are updated in the linearised model,
-/// until no move lowers the criterion.  Then the moduli are fitted again.  Such
-/// rounds go on as long as
+/// the element and delta its change.  Many elements move at a time: shares of
+/// all such moves, from 0 to 1, minimise the misfit of the linearised model and
+/// the growth of the boundaries, and moves with a share above one half are
+/// made, or the first half of these, a quarter, and so on.  Where none of that
+/// is better, moves that gain by themselves are tried likewise.  The moduli are
+/// fitted again after each trial.  Such rounds go on as long as
 ///
 ///   BIC = N ln |r|^2 + k ln N + 2 (facets between regions)
 ///
@@ -42,7 +44,7 @@ struct RegionMap {
 /// better of k = 2 and k = 3 is returned; empty where no regions could be
 /// fitted, or where sigma is not known and there are fewer than three rows for
 /// each unknown.  Cost of each of at most 15 rounds: a solve for each element
-/// for which g delta + change < 0, the best 2000 of them at most, and some fits
+/// for which g delta + change < 0, the best 1000 moves at most, and some fits
 /// of levels; memory for num_rows numbers of each of these elements.  The
 /// errors take one more such search, of elements with g delta + change < 6.
 [[nodiscard]] std::optional<RegionMap> FitRegions(const MapProblem& problem,

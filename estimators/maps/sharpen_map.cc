@@ -107,8 +107,8 @@ class SharpPreconditioner {
   Eigen::MatrixXd solved_;  // (alpha R + shift)^-1 B inner^(-1/2).
 };
 
-// Returns the Gauss-Newton step of ln E, up to the level, for this alpha R. The
-// model is at the state.
+// Returns the Gauss-Newton step of ln E without that of its level.  The model
+// is at the state.
 Eigen::VectorXd SharpStep(const MapProblem& problem,
                           const FlatUnknowns& unknowns, const MapState& state,
                           double variance,

@@ -159,7 +159,8 @@ void FindRatio(const FieldEvidence& evidence, bool stays,
   }
 }
 
-// Returns the change of y at the k of the map, and sets what this tells.
+// Returns the change of y at the k of the map, and sets the variance, the
+// effective number and the evidence of the map.
 Eigen::VectorXd SolveForChange(const FieldEvidence& evidence,
                                double homogeneous_square_sum,
                                const ColumnOperator& curvature,

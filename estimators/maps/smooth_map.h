@@ -26,8 +26,8 @@ struct SmoothMap {
   CurvatureModes modes;  ///< Of H at the state.
 };
 
-/// Returns H = A^T S^T Pi S A, where the model is; `unknowns` are those of that
-/// state.  All arguments must outlive it.
+/// Returns the operator H = A^T S^T Pi S A.  It asks the model each time, which
+/// must stay at the state of `unknowns`.  All arguments must outlive it.
 [[nodiscard]] ColumnOperator CurvatureOf(const MapProblem& problem,
                                          const FieldPrior& prior,
                                          const FlatUnknowns& unknowns);

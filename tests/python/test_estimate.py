@@ -42,7 +42,8 @@ def assert_alike(got, expected, place="report"):
         for i, value in enumerate(expected):
             assert_alike(got[i], value, f"{place}[{i}]")
     elif isinstance(expected, float):
-        # Another number of BLAS threads changes rounding, which decides where iterations end.
+        # The command line may take another number of BLAS threads.  That changes rounding, and so the step at which
+        # iterations end.
         assert got == pytest.approx(expected, rel=1e-9, nan_ok=True), place
     else:
         assert got == expected, place

@@ -232,7 +232,8 @@ TEST_P(EquilibriumOfKinds, CountsItsWork) {
   ExpectWork(equilibrium, 5, 1, 3 + 2 * 4);
 }
 
-// The same sensitivities cost nothing, and no others pass for them.
+// To ask again costs no solve, and other directions, moduli or supports never
+// get the kept sensitivities.
 TEST_P(EquilibriumOfKinds, SolvesForSensitivitiesOnce) {
   scene_.supports.unknown = scene_.supports.held;
   Equilibrium equilibrium(scene_, SolverKind::kCholesky);
@@ -256,6 +257,10 @@ TEST_P(EquilibriumOfKinds, SolvesForSensitivitiesOnce) {
   };
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(first.rows(), 2);
   expect_those_of_another_model(2 * directions, moduli, held);
+  ASSERT_EQ(equilibrium.Sensitivities(directions), first);
+  EXPECT_EQ(equilibrium.Sensitivities(directions.leftCols(2)).cols(),
+            2 * Eigen::Index(scene_.load_cases.size()));
+  EXPECT_EQ(equilibrium.Sensitivities(directions).cols(), first.cols());
   ASSERT_TRUE(equilibrium.Solve(3 * moduli));
   expect_those_of_another_model(directions, 3 * moduli, held);
   held = RandomOfHeld(scene_, 2);
