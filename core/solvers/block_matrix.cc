@@ -17,8 +17,6 @@ namespace elastimate {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 // The products of one row of blocks with kOfX columns of X, which are `stride`
 // apart.
 template <bool kWithRest, int kRows, int kColumns, int kOfX>
@@ -31,9 +29,10 @@ HWY_INLINE void MultiplyRow(const BlockMatrix& a, Eigen::Index i,
     const double* const values = x + Eigen::Index{a.column[k]} * kColumns;
     for (int c = 0; c < kColumns; ++c) {
       for (int r = 0; r < kRows; ++r) {
-        double entry = a.entries[first + c * kRows + r];
+        const Eigen::Index at = first + Eigen::Index{c} * kRows + r;
+        double entry = a.entries[at];
         if constexpr (kWithRest) {
-          entry += double{a.rest[first + c * kRows + r]};
+          entry += double{a.rest[at]};
         }
         for (int n = 0; n < kOfX; ++n) {
           sums[n][r] += entry * values[n * stride + c];
@@ -44,6 +43,8 @@ HWY_INLINE void MultiplyRow(const BlockMatrix& a, Eigen::Index i,
 }
 
 #if HWY_CAP_GE256 && !HWY_HAVE_SCALABLE
+namespace hn = hwy::HWY_NAMESPACE;
+
 // Does the same with vectors of four rows, of which the last ones read entries
 // behind the column, or behind the block.
 template <bool kWithRest, int kRows, int kColumns, int kOfX>
@@ -272,8 +273,8 @@ BlockMatrix Transposed(const BlockMatrix& a) {
     for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
       const Eigen::Index to = next[a.column[k]]++;
       result.column[to] = static_cast<int>(i);
-      for (int r = 0; r < a.block_rows; ++r) {
-        for (int c = 0; c < a.block_columns; ++c) {
+      for (Eigen::Index r = 0; r < a.block_rows; ++r) {
+        for (Eigen::Index c = 0; c < a.block_columns; ++c) {
           result.entries[to * size + r * a.block_columns + c] =
               a.entries[k * size + c * a.block_rows + r];
         }
