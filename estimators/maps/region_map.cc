@@ -147,12 +147,11 @@ class RegionSearch {
   }
 
   // Returns by how many facets the boundaries grow where an element moves.
-  double GrowthOf(const RegionMove& move,
-                  const std::vector<int>& regions) const {
+  double GrowthOf(const RegionMove& move) const {
     double growth = 0;
     for (const int other : neighbours_[move.element]) {
-      growth += regions[other] == regions[move.element] ? 1 : 0;
-      growth -= regions[other] == move.region ? 1 : 0;
+      growth += regions_[other] == regions_[move.element] ? 1 : 0;
+      growth -= regions_[other] == move.region ? 1 : 0;
     }
     return growth;
   }
@@ -172,7 +171,7 @@ class RegionSearch {
                         [&](int other) { return regions_[other] == region; });
         if (is_beside && region != regions_[e]) {
           RegionMove move = {e, region, 0};
-          move.cost = GrowthOf(move, regions_) + gradient(e) * DeltaOf(move);
+          move.cost = GrowthOf(move) + gradient(e) * DeltaOf(move);
           if (move.cost < most) {
             moves.push_back(move);
           }
@@ -212,7 +211,7 @@ class RegionSearch {
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         const double gain = double(residual.dot(changes[i])) -
-                            variance * GrowthOf(candidates[i], regions_);
+                            variance * GrowthOf(candidates[i]);
         const double curvature = std::max(double(changes[i].squaredNorm()),
                                           std::numeric_limits<double>::min());
         const double share = std::clamp(shares[i] + gain / curvature, 0.0, 1.0);

@@ -178,6 +178,24 @@ Eigen::VectorXd SolveForChange(const FieldEvidence& evidence,
   return delta;
 }
 
+// Takes as much of a change of ln E, of nu and of y as lowers the penalised
+// square sum, and returns that share.
+double Advance(const MapProblem& problem, const Eigen::VectorXd& step,
+               double step_of_nu, const Eigen::VectorXd& delta,
+               SmoothMap& map) {
+  const double before = map.square_sum + map.y.squaredNorm() / map.ratio;
+  const double share = TakeStep(
+      problem, step, step_of_nu, std::sqrt(map.variance), kMostSmoothHalvings,
+      [&](double of_step, const MapState&) {
+        return problem.model.Residual().squaredNorm() +
+                   (map.y + of_step * delta).squaredNorm() / map.ratio <
+               before;
+      },
+      map.state);
+  map.y += share * delta;
+  return share;
+}
+
 }  // namespace
 
 ColumnOperator CurvatureOf(const MapProblem& problem, const FieldPrior& prior,
@@ -242,21 +260,11 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
     if (i == kMostSmoothSteps) {
       return map;
     }
-    const double noise = std::sqrt(map.variance);
-    const double before = map.square_sum + map.y.squaredNorm() / map.ratio;
-    const double share = TakeStep(
-        problem, step, flat(1), noise, kMostSmoothHalvings,
-        [&](double of_step, const MapState&) {
-          return model.Residual().squaredNorm() +
-                     (map.y + of_step * delta).squaredNorm() / map.ratio <
-                 before;
-        },
-        map.state);
+    const double share = Advance(problem, step, flat(1), delta, map);
     if (share == 0) {
       map.has_converged = change < 10 * kSettledField;
       return map;
     }
-    map.y += share * delta;
     change_since_modes += share * change;
   }
 }

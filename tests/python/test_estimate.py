@@ -42,9 +42,7 @@ def assert_alike(got, expected, place="report"):
         for i, value in enumerate(expected):
             assert_alike(got[i], value, f"{place}[{i}]")
     elif isinstance(expected, float):
-        # The command line may take another number of BLAS threads.  That changes rounding, and so the step at which
-        # iterations end.
-        assert got == pytest.approx(expected, rel=1e-9, nan_ok=True), place
+        assert got == pytest.approx(expected, rel=1e-12, nan_ok=True), place
     else:
         assert got == expected, place
 
