@@ -182,7 +182,7 @@ void CholeskySolve(benchmark::State& state) {
   }
   const Eigen::MatrixXd b = RandomMatrix(dofs.NumFree(), state.range(1), kSeed);
   while (state.KeepRunning()) {
-    benchmark::DoNotOptimize(cholesky.Solve(b, 0));
+    benchmark::DoNotOptimize(cholesky.Solve(b, 0, {}));
   }
   CountTetrahedra(state, scene.mesh);
 }
