@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_MAP_ESTIMATE_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -62,7 +63,11 @@ struct MapEstimate {
   /// The regions in the order of their moduli; one where the body is
   /// homogeneous, none where it is a field.
   std::vector<MapRegion> regions;
-  std::vector<int> region_of_element;  ///< From 0 on; empty for a field.
+  /// The elements that the boundary between two regions cuts, with one modulus,
+  /// where they have one between those of both.
+  std::optional<MapRegion> boundary;
+  /// From 0 on, and -1 for elements of the boundary; empty for a field.
+  std::vector<int> region_of_element;
   /// The geometric mean of E over the volume [pressure].
   double mean_youngs_modulus = 0;
   double poisson_ratio = 0;

@@ -14,6 +14,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/maps/boundary_layer.h"
 #include "elastimate/estimators/maps/field_prior.h"
 #include "elastimate/estimators/maps/level_fit.h"
 #include "elastimate/estimators/maps/map_errors.h"
@@ -270,15 +271,11 @@ class MapBuilder {
     return slopes.asDiagonal() * covariance * slopes.asDiagonal();
   }
 
-  void EnterRegions(const std::vector<int>& region_of_element,
-                    const LevelFit& fit, double variance,
-                    Eigen::MatrixXd covariance) {
-    const Eigen::MatrixXd of_mesh =
-        mesh_error_
-            ? mesh_error_->CovarianceOf(region_of_element, fit)
-            : Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
-    covariance += of_mesh;
-    const Eigen::Index n = fit.levels.size();
+  // Returns the regions of these values of ln E with their standard errors.
+  std::vector<MapRegion> RegionsOf(
+      const std::vector<int>& region_of_element, const Eigen::VectorXd& levels,
+      const Eigen::VectorXd& standard_errors) const {
+    const Eigen::Index n = levels.size();
     Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
     for (Eigen::Index e = 0; e < prior_->NumElements(); ++e) {
@@ -287,22 +284,37 @@ class MapBuilder {
       lengths(region_of_element[e]) += volume * map_.resolution_length(e);
     }
     const Eigen::VectorXd largest = LargestParts(region_of_element, n, *prior_);
-    const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+    std::vector<MapRegion> regions;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double modulus = std::exp(fit.levels(i));
+      const double modulus = std::exp(levels(i));
       const double diameter = DiameterOf(largest(i), prior_->Dimension());
-      map_.regions.push_back(
-          {modulus, modulus * sd(i), scene_.mesh.section.thickness * volumes(i),
-           diameter,
+      regions.push_back(
+          {modulus, modulus * standard_errors(i),
+           scene_.mesh.section.thickness * volumes(i), diameter,
            n == 1 || diameter * volumes(i) >= kResolved * lengths(i)});
     }
-    map_.region_of_element = region_of_element;
-    map_.youngs_modulus = fit.state.log_moduli.array().exp();
-    map_.youngs_modulus_standard_error.resize(prior_->NumElements());
-    for (Eigen::Index e = 0; e < prior_->NumElements(); ++e) {
-      map_.youngs_modulus_standard_error(e) =
-          map_.regions[region_of_element[e]].standard_error;
+    return regions;
+  }
+
+  void EnterRegions(const std::vector<int>& region_of_element,
+                    const LevelFit& fit, double variance,
+                    Eigen::MatrixXd covariance) {
+    const Eigen::MatrixXd of_mesh =
+        mesh_error_
+            ? mesh_error_->CovarianceOf(*prior_, region_of_element, fit)
+            : Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
+    covariance += of_mesh;
+    const Eigen::Index n = fit.levels.size();
+    std::vector<MapRegion> regions = RegionsOf(
+        region_of_element, fit.levels, covariance.diagonal().cwiseSqrt());
+    Eigen::VectorXd volumes(n);
+    Eigen::VectorXd errors(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      volumes(i) = regions[i].volume;
+      errors(i) = regions[i].standard_error;
     }
+    map_.youngs_modulus = fit.state.log_moduli.array().exp();
+    map_.youngs_modulus_standard_error = errors(region_of_element);
     // The mean of ln E and nu are linear in the levels and the last unknown.
     Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, n + 1);
     means.row(0).head(n) = volumes.transpose() / volumes.sum();
@@ -311,6 +323,16 @@ class MapBuilder {
     map_.mesh_covariance =
         OfParameters(fit.state, means * of_mesh * means.transpose());
     EnterNoise(fit.state, variance);
+    map_.region_of_element = region_of_element;
+    if (IsBoundaryLayer(scene_.mesh, prior_->Volumes(), region_of_element,
+                        fit.levels)) {
+      map_.boundary = regions[1];
+      regions.erase(regions.begin() + 1);
+      for (int& region : map_.region_of_element) {
+        region = region == 1 ? -1 : region / 2;
+      }
+    }
+    map_.regions = std::move(regions);
   }
 
   void EnterField(const SmoothMap& smooth) {
@@ -348,7 +370,8 @@ class MapBuilder {
     }
     const double freedom = num_rows - (map_.verdict == MapVerdict::kField
                                            ? map_.supported_parameters
-                                           : double(map_.regions.size()));
+                                           : double(map_.regions.size()) +
+                                                 (map_.boundary ? 1 : 0));
     if (problem_.noise && freedom > 0) {
       const double ratio = (model_.Residual().squaredNorm() - of_mesh_) /
                            (problem_.Variance(0, 1) * freedom);

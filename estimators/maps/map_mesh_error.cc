@@ -45,7 +45,8 @@ double MapMeshError::SquareSum(const LevelFit& fit) {
 }
 
 Eigen::MatrixXd MapMeshError::CovarianceOf(
-    const std::vector<int>& part_of_element, const LevelFit& fit) {
+    const FieldPrior& prior, const std::vector<int>& part_of_element,
+    const LevelFit& fit) {
   const Eigen::Index n = fit.levels.size();
   const double nu = fit.state.poisson_ratio;
   const Eigen::VectorXd change =
@@ -62,10 +63,13 @@ Eigen::MatrixXd MapMeshError::CovarianceOf(
   Eigen::VectorXd d = Eigen::VectorXd::Zero(n + 1);
   d.head(n) = fit.levels - of_linear->levels;
   if (!problem_.known_poisson_ratio) {
+    const double of_level =
+        prior.Volumes().dot(Eigen::VectorXd(d(part_of_element)).cwiseAbs()) /
+        prior.Volumes().sum();
     d(n) = CautiousRatioChange(
         LogStiffnessRatio(nu) -
             LogStiffnessRatio(of_linear->state.poisson_ratio),
-        d.head(n).lpNorm<Eigen::Infinity>(), nu);
+        of_level, nu);
   }
   covariance += kOfMeshChange * kOfMeshChange * d * d.transpose();
   return covariance;

@@ -24,7 +24,7 @@ namespace elastimate {
 ///   c^2 d d^T + (b |du|)^2 (Z^T Z)^-1,   b = 0.03 (2 / m)^(1/2),
 ///                 is the covariance of m levels and nu whose fit changes by d,
 ///
-/// where |d nu| is not below 0.2 of the largest |d ln E|.
+/// where |d nu| is not below 0.2 of the mean of |d ln E| over the volume.
 class MapMeshError {
  public:
   /// `linear` has the linear elements that those of the model of `problem`
@@ -41,7 +41,8 @@ class MapMeshError {
   /// Returns the covariance of ln E of each part and the LogStiffnessRatio of
   /// nu.  Cost: a fit with linear elements.
   [[nodiscard]] Eigen::MatrixXd CovarianceOf(
-      const std::vector<int>& part_of_element, const LevelFit& fit);
+      const FieldPrior& prior, const std::vector<int>& part_of_element,
+      const LevelFit& fit);
   Work WorkDone() const { return coarse_.WorkDone(); }
   /// Returns c d, one column.
   [[nodiscard]] MapChanges ErrorOf(const FieldPrior& prior,

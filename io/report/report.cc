@@ -231,7 +231,8 @@ Json WorkJson(const Work& work) {
           {"factorizations", work.factorizations},
           {"multigrid_set_ups", work.multigrid_set_ups},
           {"solves", work.solves},
-          {"iterations", work.iterations}};
+          {"iterations", work.iterations},
+          {"ranks", work.ranks}};
 }
 
 Json RungsJson(const Estimate& estimate) {
@@ -323,6 +324,14 @@ Json LawsJson(const Estimate& estimate) {
   return laws;
 }
 
+Json RegionJson(const MapRegion& region) {
+  return {{"youngs_modulus", OrNull(region.youngs_modulus)},
+          {"standard_error", OrNull(region.standard_error)},
+          {"volume", region.volume},
+          {"diameter", region.diameter},
+          {"resolved", region.is_resolved}};
+}
+
 // Writes the map of a modulus; its arrays are in the VTU file.
 Json MapJson(const std::optional<MapEstimate>& map) {
   if (!map) {
@@ -330,11 +339,7 @@ Json MapJson(const std::optional<MapEstimate>& map) {
   }
   Json regions = Json::array();
   for (const MapRegion& region : map->regions) {
-    regions.push_back({{"youngs_modulus", OrNull(region.youngs_modulus)},
-                       {"standard_error", OrNull(region.standard_error)},
-                       {"volume", region.volume},
-                       {"diameter", region.diameter},
-                       {"resolved", region.is_resolved}});
+    regions.push_back(RegionJson(region));
   }
   return {{"parameter", "youngs_modulus"},
           {"verdict", MapVerdictName(map->verdict)},
@@ -344,7 +349,8 @@ Json MapJson(const std::optional<MapEstimate>& map) {
             {"field", OrNull(map->field_log_evidence)}}},
           {"supported_parameters", OrNull(map->supported_parameters)},
           {"elements", map->youngs_modulus.size()},
-          {"regions", regions}};
+          {"regions", regions},
+          {"boundary", map->boundary ? RegionJson(*map->boundary) : Json()}};
 }
 
 Json SeriesJson(const Estimate& estimate) {

@@ -251,7 +251,10 @@ std::string Solving(const Work& work) {
   }
   return (work.factorizations == 0 ? "" : factorizations) +
          Counted(work.multigrid_set_ups, "multigrid set-up") + ", " + solves +
-         " in " + Counted(work.iterations, "iteration") + ", ";
+         " in " + Counted(work.iterations, "iteration") +
+         (work.ranks > 1 ? " on " + std::to_string(work.ranks) + " ranks"
+                         : "") +
+         ", ";
 }
 
 std::string ListOf(const std::vector<int>& regions) {
@@ -365,14 +368,20 @@ void AddMap(const MapEstimate& map, std::ostringstream& text) {
               " of " + std::to_string(map.youngs_modulus.size()) +
               " parameters",
           text);
-  for (std::size_t i = 0; i < map.regions.size() && map.regions.size() > 1;
-       ++i) {
-    const MapRegion& region = map.regions[i];
+  const auto add_region = [&text](const std::string& name,
+                                  const MapRegion& region) {
     AddLine(
-        "region " + std::to_string(i + 1),
+        name,
         "E = " + ValueWithError(region.youngs_modulus, region.standard_error) +
             ", volume " + NumberText(region.volume, 3),
         text);
+  };
+  for (std::size_t i = 0; i < map.regions.size() && map.regions.size() > 1;
+       ++i) {
+    add_region("region " + std::to_string(i + 1), map.regions[i]);
+  }
+  if (map.boundary) {
+    add_region("their boundary", *map.boundary);
   }
 }
 

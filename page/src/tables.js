@@ -46,13 +46,19 @@ export function mapSection({ map }) {
   const evidence = ({ regions, field }) =>
     regions === null ? "" : `The data support ${numberText(map.supported_parameters, 3)} of ${map.elements} parameters. Logarithm of the evidence ` +
     `over one material: ${numberText(regions, 3)} for regions, ${numberText(field, 3)} for a field (from 3 on, the odds against one material are 20 to 1).`;
-  const rows = map.regions.map((region, i) => [
-    `${i + 1}`,
+  const values = (region) => [
     valueWithError(region.youngs_modulus, region.standard_error ?? 0),
     numberText(region.volume, 3),
+  ];
+  const rows = map.regions.map((region, i) => [
+    `${i + 1}`,
+    ...values(region),
     numberText(region.diameter, 3),
     region.resolved ? "yes" : "no: narrower than three resolution lengths",
   ]);
+  if (map.boundary) {
+    rows.push(["their boundary", ...values(map.boundary), "", "an element wide"]);
+  }
   return section(
     "Map of Young's modulus",
     html("p", {}, verdicts[map.verdict]),
