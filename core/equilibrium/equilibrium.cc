@@ -1,5 +1,6 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
@@ -31,13 +32,16 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
-      has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
+      has_unknown_motion_(HasUnknownMotion(*spaces.back())),
+      tolerance_(UsedSpaces(spaces).size() > 1 ? tolerance
+                                               : StiffnessSolver::kAccurate) {
   const Scene& scene = *spaces.back();
   const HeldGroups groups = GroupByHeld(scene);
   stiffness_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
-    AddStiffness(UsedSpaces(spaces), k, solver, tolerance);
+    AddStiffness(UsedSpaces(spaces), k, solver);
   }
+  SetTolerance(tolerance_);
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     held_displacement_.col(k) =
         elastimate::HeldDisplacement(SupportsOf(scene, k));
@@ -51,8 +55,7 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
 }
 
 void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
-                               Eigen::Index k, SolverKind solver,
-                               double tolerance) {
+                               Eigen::Index k, SolverKind solver) {
   std::vector<const Mesh*> meshes;
   std::vector<const Supports*> supports;
   for (const Scene* const space : spaces) {
@@ -60,8 +63,8 @@ void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
     supports.push_back(&SupportsOf(*space, k));
   }
   if (spaces.size() > 1) {
-    stiffness_.push_back(std::make_unique<RefinedStiffness>(meshes, supports,
-                                                            solver, tolerance));
+    stiffness_.push_back(
+        std::make_unique<RefinedStiffness>(meshes, supports, solver));
   } else {
     stiffness_.push_back(
         std::make_unique<AssembledStiffness>(*meshes[0], *supports[0], solver));
@@ -103,6 +106,20 @@ const NodeGraph& Equilibrium::Graph() const {
     graph_.emplace(*mesh_);
   }
   return *graph_;
+}
+
+void Equilibrium::SetTolerance(double tolerance) {
+  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
+    stiffness->SetTolerance(tolerance);
+  }
+}
+
+bool Equilibrium::SolveRoughly(const Eigen::VectorXd& moduli) {
+  constexpr double kRough = 1e-4;
+  SetTolerance(std::max(kRough, tolerance_));
+  const bool is_solved = Solve(moduli);
+  SetTolerance(tolerance_);
+  return is_solved;
 }
 
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }

@@ -65,6 +65,9 @@ class Equilibrium : public ForwardModel {
   /// there is no u then.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
 
+  /// Solves with an error of 1e-4, in the energy norm, where iterations solve.
+  [[nodiscard]] bool SolveRoughly(const Eigen::VectorXd& moduli);
+
   const Eigen::MatrixXd& Displacement() const override { return displacement_; }
 
   /// The part of u that the held displacements cause, which does not change
@@ -123,8 +126,9 @@ class Equilibrium : public ForwardModel {
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
+  void SetTolerance(double tolerance);
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
-                    SolverKind solver, double tolerance);
+                    SolverKind solver);
   /// Applies `of_stiffness` to the columns of each load case (n side by side)
   /// with the stiffness on the supports of that load case.
   template <class Function>
@@ -155,6 +159,7 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd directions_;
   double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.
   bool has_unknown_motion_;
+  double tolerance_;  ///< Of iterations.
   int element_passes_ = 0;
 };
 

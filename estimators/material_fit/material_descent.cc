@@ -27,7 +27,9 @@ struct Start {
 };
 
 // Some nu over the range of one isotropic material, each with the E that fits
-// best there; none of other scenes, and where E or nu is known.
+// best there; none of other scenes, and where E or nu is known.  They descend,
+// as the coarse spaces of multigrid for one nu serve all smaller ones, and so
+// the fit that follows.
 std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
                                            DisplacementMisfit& misfit) {
   std::vector<Start> starts;
@@ -36,7 +38,7 @@ std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
     return starts;
   }
   const Bounds& range = free.VariableBounds()[1];
-  for (const double nu : {-0.85, -0.5, 0.0, 0.3, 0.45, 0.48, 0.495, 0.499}) {
+  for (const double nu : {0.499, 0.495, 0.48, 0.45, 0.3, 0.0, -0.5, -0.85}) {
     const double within = std::clamp(nu, *range.lower, *range.upper);
     if (!starts.empty() && starts.back().variables(1) == within) {
       continue;
