@@ -174,7 +174,8 @@ int main(int argc, char** argv) {
   elastimate::StartPetscWhenNeeded();
   int exit_code = elastimate::kNoEstimate;
   try {
-    exit_code = elastimate::Run({argv + 1, argv + argc});
+    exit_code =
+        elastimate::StartRanks() ? elastimate::Run({argv + 1, argv + argc}) : 0;
   } catch (const std::bad_alloc&) {
     elastimate::EndForLackOfMemory();
   } catch (const std::exception& error) {

@@ -78,9 +78,15 @@ void Start() {
   }
   int has_mpi = 0;
   MPI_Initialized(&has_mpi);
-  // One process needs no daemon to start others.
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  if ((has_mpi != 0 || CanStartMpi()) && InitializeWithoutOptions()) {
+  const bool is_rank = NumStarted().has_value();
+  if (!is_rank) {
+    // One process needs no daemon to start others.
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  }
+  // Solves may come from any thread, one at a time.
+  PETSC_MPI_THREAD_REQUIRED = MPI_THREAD_SERIALIZED;
+  if ((has_mpi != 0 || is_rank || CanStartMpi()) &&
+      InitializeWithoutOptions()) {
     std::atexit([] { PetscFinalize(); });
   }
 }

@@ -8,17 +8,39 @@
 
 namespace elastimate {
 
+#ifdef ELASTIMATE_PETSC_MODULE
+namespace {
+
+void Start() {
+  std::string why_not;  // What wants multigrid finds that it has not started.
+  static auto* const start = FindInModule<decltype(elastimate_start_petsc)>(
+      ELASTIMATE_PETSC_MODULE, "elastimate_start_petsc", why_not);
+  if (start != nullptr) {
+    start();
+  }
+}
+
+}  // namespace
+#endif
+
 void StartPetscWhenNeeded() {
 #ifdef ELASTIMATE_PETSC_MODULE
-  SetStartOfPetsc([] {
-    std::string why_not;  // What wants multigrid finds that it has not started.
-    static auto* const start = FindInModule<decltype(elastimate_start_petsc)>(
-        ELASTIMATE_PETSC_MODULE, "elastimate_start_petsc", why_not);
-    if (start != nullptr) {
-      start();
-    }
-  });
+  SetStartOfPetsc(Start);
 #endif
+}
+
+bool StartRanks() {
+  if (NumStarted().value_or(1) == 1) {
+    return true;
+  }
+#ifdef ELASTIMATE_PETSC_MODULE
+  Start();
+  if (!ShareSolves()) {
+    return false;
+  }
+#endif
+  return NumRanksOfSolves() > 1 ||
+         NumberInEnvironment({"OMPI_COMM_WORLD_RANK", "PMI_RANK"}) == 0;
 }
 
 }  // namespace elastimate

@@ -17,6 +17,14 @@ namespace elastimate {
 /// of signals.
 void StartPetscWhenNeeded();
 
+/// Where mpirun has started the program as several processes, starts PETSc in
+/// all of them and divides solves among them (ShareSolves): on rank 0 it
+/// returns true, and on the others false once rank 0 has ended.  They then have
+/// nothing left to do.  Without PETSc they have nothing to do at once.
+/// Elsewhere it returns true and starts nothing.  For a program that has called
+/// StartPetscWhenNeeded.
+[[nodiscard]] bool StartRanks();
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_PETSC_START_PETSC_H_

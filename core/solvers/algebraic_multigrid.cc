@@ -29,6 +29,16 @@ Eigen::RowVectorXd DiagonalOf(const Eigen::MatrixXd& blocks) {
   return diagonal;
 }
 
+// Returns how many rows the ranks before this one and all ranks have.
+std::pair<Eigen::Index, Eigen::Index> NumBeforeAndInAll(Eigen::Index num_own,
+                                                        const Ranks& ranks) {
+  Eigen::RowVectorXd num_rows = Eigen::RowVectorXd::Zero(ranks.Size());
+  num_rows(ranks.Rank()) = double(num_own);
+  SumOverRanks(&ranks, num_rows);
+  return {Eigen::Index(num_rows.head(ranks.Rank()).sum()),
+          Eigen::Index(num_rows.sum())};
+}
+
 Eigen::SparseMatrix<double> Sparse(const BlockMatrix& a) {
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(a.entries.size());
@@ -49,19 +59,39 @@ Eigen::SparseMatrix<double> Sparse(const BlockMatrix& a) {
   return result;
 }
 
+// Returns the whole of a matrix, of which this rank has these rows, the first
+// of which is row `first`.
+Eigen::SparseMatrix<double> OfAllRanks(const Eigen::SparseMatrix<double>& own,
+                                       Eigen::Index first, const Halo& halo,
+                                       const Ranks& ranks) {
+  // What the rows of other ranks are called, those ranks know.
+  const Eigen::VectorXd column = halo.WithOthers(Eigen::VectorXd::LinSpaced(
+      own.rows(), double(first), double(first + own.rows() - 1)));
+  Eigen::MatrixXd entries(own.nonZeros(), 3);
+  Eigen::Index i = 0;
+  for (Eigen::Index j = 0; j < own.outerSize(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(own, j); it; ++it) {
+      entries.row(i++) << double(first + it.row()), column(j), it.value();
+    }
+  }
+  std::vector<Eigen::Triplet<double>> triplets;
+  entries = ranks.AllRows(entries);
+  for (const auto& entry : entries.rowwise()) {
+    triplets.emplace_back(int(entry(0)), int(entry(1)), entry(2));
+  }
+  const Eigen::Index size = NumBeforeAndInAll(own.rows(), ranks).second;
+  Eigen::SparseMatrix<double> all(size, size);
+  all.setFromTriplets(triplets.begin(), triplets.end());
+  return all;
+}
+
 }  // namespace
 
-AlgebraicMultigrid::AlgebraicMultigrid(NodeBlocks blocks,
+AlgebraicMultigrid::AlgebraicMultigrid(MultigridRows& rows,
                                        FindSpaces find_spaces)
-    : blocks_(std::move(blocks)),
-      row_of_free_(blocks_.RowsOfFree()),
-      find_spaces_(std::move(find_spaces)) {}
+    : rows_(rows), find_spaces_(std::move(find_spaces)) {}
 
-bool AlgebraicMultigrid::Factorize(const Eigen::VectorXd& values) {
-  values_ = &values;
-  if (!values.allFinite()) {
-    return false;
-  }
+bool AlgebraicMultigrid::Factorize() {
   are_spaces_of_matrix_ = false;
   return are_spaces_slow_ ? SetUp() : TakeFinest();
 }
@@ -70,15 +100,19 @@ bool AlgebraicMultigrid::SetUp() {
   cycle_.clear();
   restrictions_.clear();
   spaces_ = {};  // Its memory is needed.
-  finest_ = {};
+  rows_.FreeMatrix();
   ++num_set_ups_;
   are_spaces_slow_ = true;  // Unless all goes well.
-  if (!find_spaces_(*values_, spaces_)) {
+  Eigen::RowVectorXd failures(1);
+  failures << (find_spaces_(rows_, spaces_) ? 0 : 1);
+  SumOverRanks(rows_.ranks, failures);
+  if (failures(0) > 0) {
     return false;
   }
   ReturnFreeMemory();
-  for (const BlockMatrix& interpolation : spaces_.interpolations) {
-    restrictions_.push_back(Transposed(interpolation));
+  MakeHalos();
+  for (const DividedMatrix& interpolation : spaces_.interpolations) {
+    restrictions_.push_back(Transposed(interpolation.rows));
   }
   for (std::size_t i = 1; i < spaces_.matrices.size(); ++i) {
     if (!AddSpace(spaces_.matrices[i])) {
@@ -96,9 +130,28 @@ bool AlgebraicMultigrid::SetUp() {
   return true;
 }
 
+// The rows of a coarse space are the columns of the interpolation from it.
+void AlgebraicMultigrid::MakeHalos() {
+  if (rows_.ranks == nullptr) {
+    return;
+  }
+  for (std::size_t i = 0; i < spaces_.matrices.size(); ++i) {
+    const Eigen::Index num_own = spaces_.matrices[i].rows.NumBlockRows();
+    const auto [first, num_all] = NumBeforeAndInAll(num_own, *rows_.ranks);
+    MakeHalo(first, num_own, *rows_.ranks, spaces_.matrices[i]);
+    MakeHalo(first, num_own, *rows_.ranks, spaces_.interpolations[i]);
+  }
+}
+
 bool AlgebraicMultigrid::FactorizeCoarsest() {
-  Eigen::SparseMatrix<double> matrix =
-      Sparse(spaces_.matrices.empty() ? finest_ : spaces_.matrices.front());
+  const DividedMatrix& divided =
+      spaces_.matrices.empty() ? rows_.Matrix() : spaces_.matrices.front();
+  Eigen::SparseMatrix<double> matrix = Sparse(divided.rows);
+  if (rows_.ranks != nullptr) {
+    first_of_coarsest_ = NumBeforeAndInAll(matrix.rows(), *rows_.ranks).first;
+    matrix =
+        OfAllRanks(matrix, first_of_coarsest_, *divided.halo, *rows_.ranks);
+  }
   const Eigen::VectorXd diagonal = matrix.diagonal();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     matrix.coeffRef(i, i) += diagonal(i) > 0 ? kShift * diagonal(i) : 1;
@@ -108,48 +161,58 @@ bool AlgebraicMultigrid::FactorizeCoarsest() {
          (coarsest_.vectorD().array() > 0).all();
 }
 
+Eigen::MatrixXd AlgebraicMultigrid::SolveCoarsest(
+    const Eigen::MatrixXd& own) const {
+  if (rows_.ranks == nullptr) {
+    return coarsest_.solve(own);
+  }
+  const Eigen::MatrixXd all = coarsest_.solve(rows_.ranks->AllRows(own));
+  return all.middleRows(first_of_coarsest_, own.rows());
+}
+
 // Adds the space of a matrix to the cycle, above those that are there.
-bool AlgebraicMultigrid::AddSpace(const BlockMatrix& matrix) {
+bool AlgebraicMultigrid::AddSpace(const DividedMatrix& matrix) {
   const std::size_t coarser = cycle_.size();
   const bool is_finest = coarser + 1 == spaces_.interpolations.size();
   CycleSpace& space = cycle_.emplace_back();
   space.multiply = [&matrix](const Eigen::MatrixXd& x) {
     return Multiply(matrix, x);
   };
-  space.restrict = [&to = restrictions_[coarser]](const Eigen::MatrixXd& x) {
-    return Multiply(to, x);
+  space.restrict = [&from = spaces_.interpolations[coarser],
+                    &to = restrictions_[coarser]](const Eigen::MatrixXd& x) {
+    return MultiplyTransposed(from, to, x);
   };
   space.interpolate = [this, is_finest,
                        coarser](const Eigen::MatrixXd& x) -> Eigen::MatrixXd {
-    const BlockMatrix& from = spaces_.interpolations[coarser];
+    const DividedMatrix& from = spaces_.interpolations[coarser];
     return is_finest ? Multiply(from, x / scale_) : Multiply(from, x);
   };
-  const Eigen::MatrixXd blocks = DiagonalBlocks(matrix);
+  const Eigen::MatrixXd blocks = DiagonalBlocks(matrix.rows);
   const Eigen::RowVectorXd diagonal = DiagonalOf(blocks);
   if (is_finest) {
+    Eigen::RowVectorXd trace = Eigen::RowVectorXd::Constant(1, diagonal.sum());
+    SumOverRanks(rows_.ranks, trace);
     diagonal_of_spaces_ =
-        diagonal_of_spaces_ > 0 ? diagonal_of_spaces_ : diagonal.sum();
-    scale_ = diagonal.sum() / diagonal_of_spaces_;
+        diagonal_of_spaces_ > 0 ? diagonal_of_spaces_ : trace(0);
+    scale_ = trace(0) / diagonal_of_spaces_;
   }
   // Blocks of coarse spaces may be singular, as their modes may be.
   space.inverse_blocks =
       InverseBlocks(is_finest ? blocks : Eigen::MatrixXd(diagonal),
                     (diagonal.array() > 0).cast<double>().matrix().transpose());
   int num_products = 0;
-  space.largest_eigenvalue =
-      LargestEigenvalue(space.multiply, space.inverse_blocks, num_products);
+  space.largest_eigenvalue = LargestEigenvalue(
+      space.multiply, space.inverse_blocks, num_products, rows_.ranks);
   return space.largest_eigenvalue > 0;
 }
 
 // Takes the present matrix for the finest space.
 bool AlgebraicMultigrid::TakeFinest() {
-  finest_ = {};  // Its memory is needed.
-  finest_ = blocks_.MatrixOf(*values_);
   if (spaces_.matrices.empty()) {
     return FactorizeCoarsest();
   }
   cycle_.resize(spaces_.matrices.size() - 1);
-  return AddSpace(finest_);
+  return AddSpace(rows_.Matrix());
 }
 
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
@@ -166,15 +229,9 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
     const Eigen::MatrixXd& right_hand_sides, double tolerance,
     const Eigen::MatrixXd& start) {
-  const auto in_blocks = [this](const Eigen::MatrixXd& of_free) {
-    Eigen::MatrixXd rows =
-        Eigen::MatrixXd::Zero(finest_.NumRows(), of_free.cols());
-    rows(row_of_free_, Eigen::all) = of_free;
-    return rows;
-  };
-  const Eigen::MatrixXd forces = in_blocks(right_hand_sides);
   ConjugateGradientOptions options;
   options.tolerance = tolerance;
+  options.ranks = rows_.ranks;
   const double digits = std::clamp(-std::log10(tolerance), 1.0, 16.0);
   options.most_iterations =
       are_spaces_of_matrix_
@@ -183,34 +240,31 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
                        kLeastIterationsOfOthers, kMostIterations);
   options.smallest_eigenvalue = smallest_eigenvalue_;
   const ConjugateGradientResult result = SolveByConjugateGradients(
-      [&](const Eigen::MatrixXd& x) { return MultiplyAccurately(finest_, x); },
+      [&](const Eigen::MatrixXd& x) {
+        return MultiplyAccurately(rows_.Matrix(), x);
+      },
       [&](const Eigen::MatrixXd& x) {
         return VCycle(
             cycle_,
-            [&](const Eigen::MatrixXd& coarsest) {
-              return Eigen::MatrixXd(coarsest_.solve(coarsest));
-            },
-            x);
+            [&](const Eigen::MatrixXd& own) { return SolveCoarsest(own); }, x);
       },
-      forces, start.size() > 0 ? in_blocks(start) : start, options);
+      right_hand_sides, start, options);
   num_iterations_ += result.iterations;
   if (!result.has_converged) {
     are_spaces_slow_ = true;
     return std::nullopt;
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
-  const Eigen::Index num_columns =
-      (forces.colwise().squaredNorm().array() > 0).count();
   const double per_digit =
-      result.iterations / (digits * std::max(double(num_columns), 1.0));
+      result.iterations / (digits * std::max(double(result.columns), 1.0));
   if (!are_spaces_of_matrix_ && iterations_per_digit_ > 0) {
     are_spaces_slow_ =
         are_spaces_slow_ || per_digit > kMostSlowdown * iterations_per_digit_;
-  } else if (start.size() == 0) {
+  } else if (start.cols() == 0) {
     // With a good guess, few iterations tell nothing of the spaces.
     iterations_per_digit_ = std::max(iterations_per_digit_, per_digit);
   }
-  return result.solution(row_of_free_, Eigen::all);
+  return result.solution;
 }
 
 }  // namespace elastimate

@@ -8,9 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "elastimate/core/solvers/linear_solver.h"
+#include "elastimate/core/solvers/multigrid_rows.h"
 #include "elastimate/core/solvers/multigrid_spaces.h"
-#include "elastimate/core/solvers/node_blocks.h"
 #include "elastimate/core/solvers/v_cycle.h"
 
 namespace elastimate {
@@ -24,41 +23,45 @@ namespace elastimate {
 /// about a hundred iterations.
 ///
 /// OpenMP spreads the products of an iteration over the cores there are, except
-/// within an outer parallel region.
-class AlgebraicMultigrid : public LinearSolver {
+/// within an outer parallel region.  Where several ranks have the rows, all of
+/// them call each function, with their own rows of vectors.
+class AlgebraicMultigrid {
  public:
-  /// Finds the spaces for a matrix of these values in the pattern; tells
-  /// whether it could.
-  using FindSpaces =
-      std::function<bool(const Eigen::VectorXd& values, MultigridSpaces&)>;
+  /// Finds the spaces for the present matrix; tells whether it could.
+  using FindSpaces = std::function<bool(MultigridRows&, MultigridSpaces&)>;
 
-  AlgebraicMultigrid(NodeBlocks blocks, FindSpaces find_spaces);
+  /// `rows` must outlive this object.
+  AlgebraicMultigrid(MultigridRows& rows, FindSpaces find_spaces);
 
-  bool Factorize(const Eigen::VectorXd& values) override;
+  /// Prepares the matrix that the rows now have for Solve.
+  bool Factorize();
+  /// Does what LinearSolver::Solve does, for all rows of the blocks.  Held rows
+  /// of `right_hand_sides` and `start` are zero.
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
                                        double tolerance,
-                                       const Eigen::MatrixXd& start) override;
-  int NumIterations() const override { return num_iterations_; }
-  int NumSetUps() const override { return num_set_ups_; }
+                                       const Eigen::MatrixXd& start);
+  int NumIterations() const { return num_iterations_; }
+  int NumSetUps() const { return num_set_ups_; }
 
  private:
   bool SetUp();
+  void MakeHalos();
   bool FactorizeCoarsest();
-  bool AddSpace(const BlockMatrix& matrix);
+  bool AddSpace(const DividedMatrix& matrix);
+  Eigen::MatrixXd SolveCoarsest(const Eigen::MatrixXd& own) const;
   bool TakeFinest();
   std::optional<Eigen::MatrixXd> SolveOnce(
       const Eigen::MatrixXd& right_hand_sides, double tolerance,
       const Eigen::MatrixXd& start);
 
-  NodeBlocks blocks_;
-  std::vector<int> row_of_free_;
+  MultigridRows& rows_;
   FindSpaces find_spaces_;
-  const Eigen::VectorXd* values_ = nullptr;
   MultigridSpaces spaces_;
-  BlockMatrix finest_;
   std::vector<BlockMatrix> restrictions_;  ///< The interpolations, transposed.
   std::vector<CycleSpace> cycle_;
+  /// The factor of the whole coarsest matrix, of which each rank has a copy.
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;
+  Eigen::Index first_of_coarsest_ = 0;  ///< The first own row of these.
   bool are_spaces_of_matrix_ = false;
   bool are_spaces_slow_ = true;
   double diagonal_of_spaces_ = 0;  ///< The trace of their own matrix.

@@ -223,32 +223,23 @@ Eigen::MatrixXd MultiplyAccurately(const BlockMatrix& a,
   return MultiplyInParallel(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsWithRest));
 }
 
-BlockMatrix Ordered(const BlockMatrix& a, const std::vector<int>& rows,
-                    const std::vector<int>& new_columns) {
+BlockMatrix RowsOf(const BlockMatrix& a, Eigen::Index first, Eigen::Index end) {
   BlockMatrix result;
   result.block_rows = a.block_rows;
   result.block_columns = a.block_columns;
   result.num_columns = a.num_columns;
-  result.start.reserve(a.start.size());
-  result.column.reserve(a.column.size());
-  result.entries.reserve(a.entries.size());
-  result.rest.reserve(a.rest.size());
-  const Eigen::Index size = Eigen::Index{a.block_rows} * a.block_columns;
-  const auto append = [size](const std::vector<float>& from, Eigen::Index k,
-                             std::vector<float>& to) {
-    to.insert(to.end(), from.begin() + size * k, from.begin() + size * (k + 1));
+  for (Eigen::Index i = first; i <= end; ++i) {
+    result.start.push_back(a.start[i] - a.start[first]);
+  }
+  const auto copy = [&](const auto& from, Eigen::Index size, auto& to) {
+    to.assign(from.begin() + size * a.start[first],
+              from.begin() + size * a.start[end]);
   };
-  result.start.push_back(0);
-  for (const int row : rows) {
-    for (Eigen::Index k = a.start[row]; k < a.start[row + 1]; ++k) {
-      result.column.push_back(new_columns.empty() ? a.column[k]
-                                                  : new_columns[a.column[k]]);
-      append(a.entries, k, result.entries);
-      if (!a.rest.empty()) {
-        append(a.rest, k, result.rest);
-      }
-    }
-    result.start.push_back(Eigen::Index(result.column.size()));
+  const Eigen::Index size = Eigen::Index{a.block_rows} * a.block_columns;
+  copy(a.column, 1, result.column);
+  copy(a.entries, size, result.entries);
+  if (!a.rest.empty()) {
+    copy(a.rest, size, result.rest);
   }
   return result;
 }

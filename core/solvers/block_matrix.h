@@ -36,12 +36,9 @@ struct BlockMatrix {
 [[nodiscard]] Eigen::MatrixXd MultiplyAccurately(const BlockMatrix& a,
                                                  const Eigen::MatrixXd& x);
 
-/// Returns the matrix whose i-th row of blocks is row rows[i] of A, with the
-/// column j of blocks of A as its column new_columns[j], or all columns where
-/// they are where new_columns is empty.  Blocks keep their order within a row.
-[[nodiscard]] BlockMatrix Ordered(const BlockMatrix& a,
-                                  const std::vector<int>& rows,
-                                  const std::vector<int>& new_columns);
+/// Returns the rows of blocks from `first` to before `end`, with all columns.
+[[nodiscard]] BlockMatrix RowsOf(const BlockMatrix& a, Eigen::Index first,
+                                 Eigen::Index end);
 
 /// Returns the transpose of A, without `rest`.
 [[nodiscard]] BlockMatrix Transposed(const BlockMatrix& a);

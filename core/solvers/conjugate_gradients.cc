@@ -9,11 +9,6 @@
 namespace elastimate {
 namespace {
 
-Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixXd& a,
-                                     const Eigen::MatrixXd& b) {
-  return a.cwiseProduct(b).colwise().sum();
-}
-
 // The tridiagonal matrix of one column, whose eigenvalues are Ritz values of
 // M A [Golub & Van Loan, Matrix Computations].
 class LanczosMatrix {
@@ -60,12 +55,14 @@ class Iterations {
     result_.smallest_eigenvalue = options.smallest_eigenvalue;
     result_.solution =
         Eigen::MatrixXd::Zero(right_hand_sides.rows(), right_hand_sides.cols());
+    const Eigen::RowVectorXd size = SumsOfMagnitudes(right_hand_sides);
     for (Eigen::Index k = 0; k < right_hand_sides.cols(); ++k) {
       // A column without a force has no displacement, whatever the guess.
-      if (!right_hand_sides.col(k).isZero(0)) {
+      if (size(k) != 0) {
         columns_.push_back(k);
       }
     }
+    result_.columns = int(columns_.size());
     force_ = right_hand_sides(Eigen::all, columns_);
     residual_ = force_;
     x_ = Eigen::MatrixXd::Zero(force_.rows(), force_.cols());
@@ -73,13 +70,14 @@ class Iterations {
   }
 
   void BeginWith(const Eigen::MatrixXd& start) {
-    if (start.size() == 0 || columns_.empty()) {
+    if (start.cols() == 0 || columns_.empty()) {
       return;
     }
     Eigen::MatrixXd guess = start(Eigen::all, columns_);
-    for (auto column : guess.colwise()) {
-      if (!column.allFinite()) {
-        column.setZero();
+    const Eigen::RowVectorXd size = SumsOfMagnitudes(guess);
+    for (Eigen::Index k = 0; k < guess.cols(); ++k) {
+      if (!std::isfinite(size(k))) {
+        guess.col(k).setZero();
       }
     }
     const Eigen::MatrixXd product = Multiply(guess);
@@ -105,6 +103,20 @@ class Iterations {
   }
 
  private:
+  template <class A, class B>
+  Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixBase<A>& a,
+                                       const Eigen::MatrixBase<B>& b) const {
+    Eigen::RowVectorXd products = a.cwiseProduct(b).colwise().sum();
+    SumOverRanks(options_.ranks, products);
+    return products;
+  }
+
+  Eigen::RowVectorXd SumsOfMagnitudes(const Eigen::MatrixXd& a) const {
+    Eigen::RowVectorXd sums = a.cwiseAbs().colwise().sum();
+    SumOverRanks(options_.ranks, sums);
+    return sums;
+  }
+
   Eigen::MatrixXd Multiply(const Eigen::MatrixXd& x) {
     ++result_.products;
     return multiply_(x);
@@ -156,11 +168,8 @@ class Iterations {
     }
   }
 
-  bool IsDone(std::size_t k, double rz) {
-    const auto column = Eigen::Index(k);
-    const double most =
-        options_.tolerance * options_.tolerance *
-        x_.col(column).dot(force_.col(column) - residual_.col(column));
+  bool IsDone(std::size_t k, double rz, double energy) {
+    const double most = options_.tolerance * options_.tolerance * energy;
     // The smallest eigenvalue that is known can only decrease later.
     if (!(rz <= most * result_.smallest_eigenvalue)) {
       return false;
@@ -172,8 +181,9 @@ class Iterations {
   // Puts the columns that are done into the result, and keeps the others.
   void TakeWhatIsDone(Eigen::MatrixXd& z, Eigen::RowVectorXd& rz) {
     std::vector<Eigen::Index> kept;
+    const Eigen::RowVectorXd energy = ProductsOfColumns(x_, force_ - residual_);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (IsDone(k, rz(Eigen::Index(k)))) {
+      if (IsDone(k, rz(Eigen::Index(k)), energy(Eigen::Index(k)))) {
         result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
       } else {
         kept.push_back(Eigen::Index(k));
@@ -184,7 +194,7 @@ class Iterations {
     }
     for (Eigen::MatrixXd* const matrix :
          {&force_, &x_, &residual_, &direction_, &product_, &z}) {
-      if (matrix->size() > 0) {
+      if (matrix->cols() > 0) {
         *matrix = (*matrix)(Eigen::all, kept).eval();
       }
     }

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <functional>
 
+#include "elastimate/core/parallel/ranks.h"
+
 namespace elastimate {
 
 /// A matrix or a preconditioner, which maps columns to columns: size x n.
@@ -15,6 +17,9 @@ struct ConjugateGradientOptions {
   int most_iterations = 200;
   /// A first guess of the smallest eigenvalue of M A, which is 1 for M = A^-1.
   double smallest_eigenvalue = 1;
+  /// The ranks among which the rows are divided; each calls with its own rows.
+  /// Null for one process.
+  const Ranks* ranks = nullptr;
 };
 
 struct ConjugateGradientResult {
@@ -22,6 +27,7 @@ struct ConjugateGradientResult {
   bool has_converged = false;  ///< Whether all columns have converged.
   int iterations = 0;          ///< The sum over all columns.
   int products = 0;            ///< Products with A, of any columns each.
+  int columns = 0;             ///< Those with a force.
   /// The extreme eigenvalues of M A as the iterations see them (Ritz values).
   /// Without any iteration they are the guess and 0.
   double smallest_eigenvalue = 1;

@@ -2,12 +2,15 @@
 
 #include <atomic>
 #include <cassert>
+#include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/mesh/node_order.h"
 #include "elastimate/core/package/dynamic_module.h"
-#include "elastimate/core/solvers/algebraic_multigrid.h"
+#include "elastimate/core/solvers/multigrid_solver.h"
+#include "elastimate/core/solvers/node_blocks.h"
 #include "elastimate/core/solvers/petsc_spaces.h"
 
 namespace elastimate {
@@ -18,6 +21,7 @@ std::atomic<void (*)()> start_of_petsc = nullptr;
 struct Module {
   decltype(elastimate_find_multigrid_spaces)* find_spaces = nullptr;
   decltype(elastimate_is_petsc_running)* is_running = nullptr;
+  const Ranks* (*ranks)() = nullptr;
   std::string why_not;
 
   Module() {
@@ -28,6 +32,8 @@ struct Module {
     if (find_spaces != nullptr) {
       is_running = FindInModule<decltype(elastimate_is_petsc_running)>(
           ELASTIMATE_MULTIGRID_MODULE, "elastimate_is_petsc_running", why_not);
+      ranks = FindInModule<const Ranks*()>(ELASTIMATE_MULTIGRID_MODULE,
+                                           "elastimate_ranks", why_not);
     }
 #else
     why_not = "the program was built without PETSc";
@@ -40,17 +46,12 @@ const Module& TheModule() {
   return module;
 }
 
-// Returns the rows of blocks in this order of the nodes.
-std::vector<int> RowsIn(const std::vector<int>& order,
-                        const NodeBlocks& blocks) {
-  std::vector<int> rows;
-  for (const int node : order) {
-    if (blocks.OfNodes()[node] >= 0) {
-      rows.push_back(blocks.OfNodes()[node]);
-    }
-  }
-  return rows;
+bool FindSpaces(MultigridRows& rows, MultigridSpaces& spaces) {
+  return TheModule().find_spaces(rows, spaces);
 }
+
+// Those that share the solves; null for one process.
+const Ranks* ranks_of_solves = nullptr;
 
 }  // namespace
 
@@ -74,23 +75,40 @@ std::unique_ptr<LinearSolver> MakeMultigrid(
     start();
   }
   // In Gmsh's numbering, products would take 1.5 times as long.
-  const std::vector<int> order =
-      HasLocality(mesh) ? std::vector<int>() : OrderForLocality(mesh).places;
-  return std::make_unique<AlgebraicMultigrid>(
-      NodeBlocks(assembly.Graph(), degrees_of_freedom, order),
-      [&, order](const Eigen::VectorXd& values, MultigridSpaces& spaces) {
-        // PETSc needs ascending columns, so it gets blocks in the order of the
-        // nodes.
-        const NodeBlocks blocks(assembly.Graph(), degrees_of_freedom, {});
-        if (!TheModule().find_spaces(mesh, blocks, values, spaces)) {
-          return false;
-        }
-        if (!order.empty() && !spaces.interpolations.empty()) {
-          spaces.interpolations.back() =
-              Ordered(spaces.interpolations.back(), RowsIn(order, blocks), {});
-        }
-        return true;
-      });
+  NodeBlocks blocks(
+      assembly.Graph(), degrees_of_freedom,
+      HasLocality(mesh) ? std::vector<int>() : OrderForLocality(mesh).places);
+  return ranks_of_solves == nullptr
+             ? MakeMultigridOfOneRank(mesh, std::move(blocks), FindSpaces)
+             : MakeMultigridOfRanks(mesh, std::move(blocks), FindSpaces,
+                                    *ranks_of_solves);
+}
+
+bool ShareSolves() {
+  const Module& module = TheModule();
+  const Ranks* const ranks = module.ranks == nullptr ? nullptr : module.ranks();
+  if (ranks == nullptr) {
+    return true;
+  }
+  ranks_of_solves = ranks;
+  std::atexit(EndSharedSolves);
+  if (ranks->Rank() > 0) {
+    ServeSolves(FindSpaces, *ranks);
+    ranks_of_solves = nullptr;
+    return false;
+  }
+  return true;
+}
+
+void EndSharedSolves() {
+  if (ranks_of_solves != nullptr) {
+    EndService(*ranks_of_solves);
+    ranks_of_solves = nullptr;
+  }
+}
+
+int NumRanksOfSolves() {
+  return ranks_of_solves == nullptr ? 1 : ranks_of_solves->Size();
 }
 
 }  // namespace elastimate

@@ -29,8 +29,20 @@ void SetStartOfPetsc(void (*start)());
 
 inline bool HasMultigrid() { return WhyNoMultigrid().empty(); }
 
+/// Divides what multigrid solves among the processes of PETSC_COMM_WORLD, which
+/// all call this function once, while PETSc runs.  On rank 0 it returns true at
+/// once: this rank goes on alone, and has the others take part in each set-up
+/// and solve.  On these it returns false once rank 0 calls EndSharedSolves or
+/// exits.  Where there is one process, it returns true and does nothing.
+[[nodiscard]] bool ShareSolves();
+/// Lets the other processes go on.  Rank 0 calls it before PETSc ends, when no
+/// solver of MakeMultigrid is left.
+void EndSharedSolves();
+/// Returns how many processes share the solves; 1 without ShareSolves.
+[[nodiscard]] int NumRanksOfSolves();
+
 /// Returns an AlgebraicMultigrid whose coarse spaces PETSc finds; its Factorize
-/// fails where PETSc fails to start.  The arguments must outlive it.
+/// fails where PETSc fails to start.  The last two arguments must outlive it.
 /// Precondition: HasMultigrid().
 [[nodiscard]] std::unique_ptr<LinearSolver> MakeMultigrid(
     const Mesh& mesh, const StiffnessAssembly& assembly,

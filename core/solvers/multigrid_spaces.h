@@ -3,17 +3,17 @@
 
 #include <vector>
 
-#include "elastimate/core/solvers/block_matrix.h"
+#include "elastimate/core/solvers/divided_matrix.h"
 
 namespace elastimate {
 
 /// The coarse spaces of a multigrid method, from coarse to fine.
 struct MultigridSpaces {
   /// The matrix of each coarse space, without that of the finest.
-  std::vector<BlockMatrix> matrices;
+  std::vector<DividedMatrix> matrices;
   /// The interpolation from each coarse space to the next finer one.  The last
   /// leads to the finest space.
-  std::vector<BlockMatrix> interpolations;
+  std::vector<DividedMatrix> interpolations;
 };
 
 }  // namespace elastimate

@@ -1,5 +1,6 @@
 #include "elastimate/core/solvers/node_blocks.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace elastimate {
@@ -57,6 +58,61 @@ std::vector<int> NodeBlocks::RowsOfFree() const {
                    int(dof % Dimension()));
   }
   return rows;
+}
+
+template <class Visitor>
+void NodeBlocks::VisitEntries(const Eigen::VectorXd& values,
+                              const Visitor& visit) const {
+  std::vector<Eigen::Index> next(start_.begin(), start_.end() - 1);
+  const double* value = values.data();
+  for (Eigen::Index node = 0; node < Eigen::Index(of_node_.size()); ++node) {
+    const int a = of_node_[node];
+    if (a < 0) {
+      continue;
+    }
+    const Eigen::Index diagonal = next[a];
+    double scale = 0;
+    for (int j = 0; j < Dimension(); ++j) {
+      if (!IsFree(node, j)) {
+        continue;
+      }
+      Eigen::Index own = diagonal;
+      for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1];
+           ++k) {
+        const int row = graph_.row[k];
+        const int b = of_node_[row];
+        if (b < 0) {
+          continue;
+        }
+        for (int i = b == a ? j : 0; i < Dimension(); ++i) {
+          if (!IsFree(row, i)) {
+            continue;
+          }
+          visit(own, j, i, *value);
+          if (b != a) {
+            visit(next[b], i, j, *value);
+          } else if (i != j) {
+            visit(own, i, j, *value);
+          } else {
+            scale = std::max(scale, *value);
+          }
+          ++value;
+        }
+        ++own;
+      }
+    }
+    for (int j = 0; j < Dimension(); ++j) {
+      if (!IsFree(node, j)) {
+        visit(diagonal, j, j, scale);
+      }
+    }
+    for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
+      const int b = of_node_[graph_.row[k]];
+      if (b >= 0 && b != a) {
+        ++next[b];
+      }
+    }
+  }
 }
 
 BlockMatrix NodeBlocks::MatrixOf(const Eigen::VectorXd& values) const {

@@ -2,12 +2,16 @@
 
 #include <petscksp.h>
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <new>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "elastimate/core/solvers/petsc_ranks.h"
 
 #ifdef ELASTIMATE_HAS_ML
 // ml_utils.h declares this function, but would bring in all of Trilinos.
@@ -80,8 +84,7 @@ class UseOfPetsc {
 
 class PetscMatrix {
  public:
-  PetscMatrix(const Mesh& mesh, const NodeBlocks& blocks,
-              const Eigen::VectorXd& values);
+  explicit PetscMatrix(MultigridRows& rows);
   ~PetscMatrix() {
     PCDestroy(&preconditioner_);
     MatDestroy(&matrix_);
@@ -92,65 +95,80 @@ class PetscMatrix {
   MultigridSpaces FindSpaces();
 
  private:
-  void SetEntries(const Eigen::VectorXd& values);
+  MPI_Comm Communicator() const {
+    return rows_.ranks == nullptr
+               ? PETSC_COMM_SELF
+               : static_cast<const MpiRanks*>(rows_.ranks)->Communicator();
+  }
+  Eigen::Index Dimension() const { return rows_.positions.rows(); }
+  void TakeEntries(const BlockMatrix& rows);
+  PetscInt NumberInAll(int column) const;
+  PCType PreconditionerFor(const BlockMatrix& rows) const;
   void SetNearNullSpace();
-  PCType Preconditioner() const;
 
-  const Mesh& mesh_;
-  const NodeBlocks& blocks_;
+  MultigridRows& rows_;
   std::vector<PetscInt> row_start_;
   std::vector<PetscInt> column_;
   std::vector<double> entries_;
+  PCType type_;
   Mat matrix_ = nullptr;
   PC preconditioner_ = nullptr;
 };
 
-PetscMatrix::PetscMatrix(const Mesh& mesh, const NodeBlocks& blocks,
-                         const Eigen::VectorXd& values)
-    : mesh_(mesh), blocks_(blocks) {
-  SetEntries(values);
-  const PetscInt size = blocks.Dimension() * blocks.NumBlocks();
-  Check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, size, size,
-                                  row_start_.data(), column_.data(),
-                                  entries_.data(), &matrix_));
-  Check(MatSetBlockSize(matrix_, blocks.Dimension()));
+PetscMatrix::PetscMatrix(MultigridRows& rows) : rows_(rows) {
+  TakeEntries(rows.Matrix().rows);
+  type_ = PreconditionerFor(rows.Matrix().rows);
+  rows.FreeMatrix();  // PETSc needs its memory.
+  const auto size = static_cast<PetscInt>(rows.positions.size());
+  if (rows.ranks == nullptr) {
+    Check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, size, size,
+                                    row_start_.data(), column_.data(),
+                                    entries_.data(), &matrix_));
+  } else {
+    Check(MatCreateMPIAIJWithArrays(Communicator(), size, size, PETSC_DETERMINE,
+                                    PETSC_DETERMINE, row_start_.data(),
+                                    column_.data(), entries_.data(), &matrix_));
+    column_ = {};
+    entries_ = {};
+  }
+  Check(MatSetBlockSize(matrix_, PetscInt(Dimension())));
   Check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
 }
 
-void PetscMatrix::SetEntries(const Eigen::VectorXd& values) {
-  const int dimension = blocks_.Dimension();
-  const std::vector<Eigen::Index>& start = blocks_.Start();
-  const Eigen::Index num_entries =
-      Eigen::Index(blocks_.Columns().size()) * dimension * dimension;
-  if (num_entries > std::numeric_limits<PetscInt>::max()) {
+// Returns the number over all ranks of a column of blocks.
+PetscInt PetscMatrix::NumberInAll(int column) const {
+  const Eigen::Index num_own = rows_.positions.cols();
+  return column < num_own ? PetscInt(rows_.first_own + column)
+                          : PetscInt(rows_.others[column - num_own]);
+}
+
+void PetscMatrix::TakeEntries(const BlockMatrix& rows) {
+  const Eigen::Index d = Dimension();
+  if (rows.entries.size() > std::size_t(std::numeric_limits<PetscInt>::max())) {
     throw std::bad_alloc();
   }
   row_start_.assign(1, 0);
-  column_.reserve(num_entries);
-  // The place of the first entry of each block, and the length of the rows of
-  // the matrix that it lies in.
-  std::vector<PetscInt> first(blocks_.Columns().size());
-  std::vector<PetscInt> row_length(blocks_.Columns().size());
-  for (int a = 0; a < blocks_.NumBlocks(); ++a) {
-    for (int i = 0; i < dimension; ++i) {
-      for (Eigen::Index k = start[a]; k < start[a + 1]; ++k) {
-        if (i == 0) {
-          first[k] = static_cast<PetscInt>(column_.size());
-          row_length[k] =
-              static_cast<PetscInt>(dimension * (start[a + 1] - start[a]));
-        }
-        for (int j = 0; j < dimension; ++j) {
-          column_.push_back(dimension * blocks_.Columns()[k] + j);
+  column_.reserve(rows.entries.size());
+  entries_.reserve(rows.entries.size());
+  // PETSc wants the columns of a row in ascending order.
+  std::vector<std::pair<PetscInt, Eigen::Index>> blocks;
+  for (Eigen::Index a = 0; a < rows.NumBlockRows(); ++a) {
+    blocks.clear();
+    for (Eigen::Index k = rows.start[a]; k < rows.start[a + 1]; ++k) {
+      blocks.emplace_back(NumberInAll(rows.column[k]), k);
+    }
+    std::sort(blocks.begin(), blocks.end());
+    for (Eigen::Index i = 0; i < d; ++i) {
+      for (const auto& [column, k] : blocks) {
+        for (Eigen::Index j = 0; j < d; ++j) {
+          const Eigen::Index at = d * d * k + d * j + i;
+          column_.push_back(PetscInt(d * column + j));
+          entries_.push_back(double{rows.entries[at]} + double{rows.rest[at]});
         }
       }
       row_start_.push_back(static_cast<PetscInt>(column_.size()));
     }
   }
-  entries_.assign(num_entries, 0);
-  blocks_.VisitEntries(
-      values, [&](Eigen::Index block, int i, int j, double value) {
-        entries_[first[block] + i * row_length[block] + j] = value;
-      });
 }
 
 // Makes the modes that a coarse mesh must represent as well as a fine one.
@@ -159,13 +177,8 @@ void PetscMatrix::SetNearNullSpace() {
   Check(MatCreateVecs(matrix_, &positions, nullptr));
   double* values = nullptr;
   Check(VecGetArray(positions, &values));
-  for (Eigen::Index node = 0; node < mesh_.NumNodes(); ++node) {
-    const Eigen::Index block = blocks_.OfNodes()[node];
-    if (block >= 0) {
-      Eigen::VectorXd::Map(values + blocks_.Dimension() * block,
-                           blocks_.Dimension()) = mesh_.nodes.col(node);
-    }
-  }
+  Eigen::MatrixXd::Map(values, rows_.positions.rows(), rows_.positions.cols()) =
+      rows_.positions;
   Check(VecRestoreArray(positions, &values));
   MatNullSpace rigid_motions = nullptr;
   Check(MatNullSpaceCreateRigidBody(positions, &rigid_motions));
@@ -177,41 +190,44 @@ void PetscMatrix::SetNearNullSpace() {
 // GAMG of PETSc 3.18 needs a quarter of the memory of Trilinos' ML for
 // tetrahedra as Gmsh makes them.  On hexahedra it is a third slower, and it
 // coarsens meshes with many nodes of few neighbours, such as cubes of five
-// tetrahedra, by two only, which takes four times as long.
-PCType PetscMatrix::Preconditioner() const {
+// tetrahedra, by two only, which takes four times as long.  The interpolations
+// of ML cannot be read where several ranks have them.
+PCType PetscMatrix::PreconditionerFor(const BlockMatrix& rows) const {
 #ifdef ELASTIMATE_HAS_ML
-  constexpr PetscInt kFewBlocks = 8;
-  int num_with_few = 0;
-  for (int a = 0; a < blocks_.NumBlocks(); ++a) {
-    num_with_few +=
-        blocks_.Start()[a + 1] - blocks_.Start()[a] <= kFewBlocks ? 1 : 0;
+  constexpr Eigen::Index kFewBlocks = 8;
+  Eigen::Index num_with_few = 0;
+  for (Eigen::Index a = 0; a < rows.NumBlockRows(); ++a) {
+    num_with_few += rows.start[a + 1] - rows.start[a] <= kFewBlocks ? 1 : 0;
   }
-  if (!IsSimplex(mesh_.kind) || num_with_few > blocks_.NumBlocks() / 4) {
+  if (rows_.ranks == nullptr &&
+      (!rows_.are_simplices || num_with_few > rows.NumBlockRows() / 4)) {
     return PCML;
   }
 #endif
   return PCGAMG;
 }
 
-// Returns a matrix in blocks of this size, of which those without an entry are
-// left out.
-BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
-  PetscInt num_rows = 0;
+// Returns the own rows of a matrix in blocks of this size, of which those
+// without an entry are left out.
+DividedMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
+  PetscInt first_row = 0;
+  PetscInt end_row = 0;
+  Check(MatGetOwnershipRange(matrix, &first_row, &end_row));
   PetscInt num_columns = 0;
-  Check(MatGetSize(matrix, &num_rows, &num_columns));
-  BlockMatrix result;
-  result.block_rows = block_rows;
-  result.block_columns = block_columns;
-  result.num_columns = num_columns;
-  result.start.assign(1, 0);
+  Check(MatGetSize(matrix, nullptr, &num_columns));
+  BlockMatrix rows;
+  rows.block_rows = block_rows;
+  rows.block_columns = block_columns;
+  rows.num_columns = num_columns;
+  rows.start.assign(1, 0);
   const int size = block_rows * block_columns;
   MatInfo info;
   Check(MatGetInfo(matrix, MAT_LOCAL, &info));
   const auto num_entries = static_cast<std::size_t>(info.nz_used);
-  result.column.reserve(num_entries / size);
-  result.entries.reserve(num_entries);
+  rows.column.reserve(num_entries / size);
+  rows.entries.reserve(num_entries);
   std::vector<Eigen::Index> place(num_columns / block_columns, -1);
-  for (PetscInt first = 0; first < num_rows; first += block_rows) {
+  for (PetscInt first = first_row; first < end_row; first += block_rows) {
     for (int r = 0; r < block_rows; ++r) {
       PetscInt length = 0;
       const PetscInt* columns = nullptr;
@@ -219,23 +235,23 @@ BlockMatrix InBlocks(Mat matrix, int block_rows, int block_columns) {
       Check(MatGetRow(matrix, first + r, &length, &columns, &values));
       for (PetscInt k = 0; k < length; ++k) {
         Eigen::Index& block = place[columns[k] / block_columns];
-        if (block < result.start.back()) {
-          block = Eigen::Index(result.column.size());
-          result.column.push_back(columns[k] / block_columns);
-          result.entries.resize(result.entries.size() + size, 0);
+        if (block < rows.start.back()) {
+          block = Eigen::Index(rows.column.size());
+          rows.column.push_back(columns[k] / block_columns);
+          rows.entries.resize(rows.entries.size() + size, 0);
         }
         const Eigen::Index at =
             block * size +
             Eigen::Index{columns[k] % block_columns} * block_rows + r;
-        result.entries[at] = static_cast<float>(values[k]);
+        rows.entries[at] = static_cast<float>(values[k]);
       }
       Check(MatRestoreRow(matrix, first + r, &length, &columns, &values));
     }
-    result.start.push_back(Eigen::Index(result.column.size()));
+    rows.start.push_back(Eigen::Index(rows.column.size()));
   }
-  result.column.shrink_to_fit();
-  result.entries.shrink_to_fit();
-  return result;
+  rows.column.shrink_to_fit();
+  rows.entries.shrink_to_fit();
+  return {std::move(rows), nullptr};
 }
 
 MultigridSpaces PetscMatrix::FindSpaces() {
@@ -244,16 +260,16 @@ MultigridSpaces PetscMatrix::FindSpaces() {
   // The estimates of largest eigenvalues start from random vectors.
   ML_set_random_seed(1);
 #endif
-  Check(PCCreate(PETSC_COMM_SELF, &preconditioner_));
+  Check(PCCreate(Communicator(), &preconditioner_));
   Check(PCSetOptionsPrefix(preconditioner_, "elastimate_"));
-  Check(PCSetType(preconditioner_, Preconditioner()));
+  Check(PCSetType(preconditioner_, type_));
   Check(PCSetOperators(preconditioner_, matrix_, matrix_));
   Check(PCSetFromOptions(preconditioner_));
   Check(PCSetUp(preconditioner_));
   MultigridSpaces spaces;
   PetscInt num_spaces = 0;
   Check(PCMGGetLevels(preconditioner_, &num_spaces));
-  const int coarse_block = 3 * blocks_.Dimension() - 3;
+  const int coarse_block = int(3 * Dimension() - 3);
   for (PetscInt space = 0; space < num_spaces; ++space) {
     const bool is_finest = space + 1 == num_spaces;
     if (!is_finest) {
@@ -266,9 +282,9 @@ MultigridSpaces PetscMatrix::FindSpaces() {
     if (space > 0) {
       Mat interpolation = nullptr;
       Check(PCMGGetInterpolation(preconditioner_, space, &interpolation));
-      spaces.interpolations.push_back(InBlocks(
-          interpolation, is_finest ? blocks_.Dimension() : coarse_block,
-          coarse_block));
+      spaces.interpolations.push_back(
+          InBlocks(interpolation, is_finest ? int(Dimension()) : coarse_block,
+                   coarse_block));
     }
   }
   return spaces;
@@ -277,13 +293,11 @@ MultigridSpaces PetscMatrix::FindSpaces() {
 }  // namespace
 }  // namespace elastimate
 
-bool elastimate_find_multigrid_spaces(const elastimate::Mesh& mesh,
-                                      const elastimate::NodeBlocks& blocks,
-                                      const Eigen::VectorXd& values,
+bool elastimate_find_multigrid_spaces(elastimate::MultigridRows& rows,
                                       elastimate::MultigridSpaces& spaces) {
   try {
     const elastimate::UseOfPetsc use;
-    spaces = elastimate::PetscMatrix(mesh, blocks, values).FindSpaces();
+    spaces = elastimate::PetscMatrix(rows).FindSpaces();
   } catch (const elastimate::PetscFailure&) {
     return false;
   }

@@ -54,6 +54,7 @@ StiffnessSolver::StiffnessSolver(const Mesh& mesh, const Supports& supports,
     // Its set-up takes much longer than an element pass, and much memory.
     assembly_->ForgetBases();
     solver_ = MakeMultigrid(mesh, *assembly_, degrees_of_freedom_);
+    work_.ranks = NumRanksOfSolves();
   }
 }
 
@@ -97,6 +98,7 @@ bool StiffnessSolver::FactorizeValues() {
 void StiffnessSolver::FallBackToCholesky(const std::string& why) {
   notice_ = "multigrid " + why + ", so the stiffness matrix was factorised";
   is_multigrid_ = false;
+  work_.ranks = 1;
   solver_.reset();  // Its memory is needed.
   solver_ = std::make_unique<Cholesky>(*assembly_, degrees_of_freedom_);
 }

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_SOLVERS_STIFFNESS_SOLVER_H_
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -20,20 +21,25 @@ struct Work {
   int multigrid_set_ups = 0;
   int solves = 0;      ///< Right-hand sides that were solved for.
   int iterations = 0;  ///< Steps of conjugate gradients, all columns.
+  int ranks = 1;       ///< Processes that solved together (ShareSolves).
 };
 
 inline Work operator+(const Work& a, const Work& b) {
   return {a.element_passes + b.element_passes,
           a.factorizations + b.factorizations,
-          a.multigrid_set_ups + b.multigrid_set_ups, a.solves + b.solves,
-          a.iterations + b.iterations};
+          a.multigrid_set_ups + b.multigrid_set_ups,
+          a.solves + b.solves,
+          a.iterations + b.iterations,
+          std::max(a.ranks, b.ranks)};
 }
 
 inline Work operator-(const Work& a, const Work& b) {
   return {a.element_passes - b.element_passes,
           a.factorizations - b.factorizations,
-          a.multigrid_set_ups - b.multigrid_set_ups, a.solves - b.solves,
-          a.iterations - b.iterations};
+          a.multigrid_set_ups - b.multigrid_set_ups,
+          a.solves - b.solves,
+          a.iterations - b.iterations,
+          a.ranks};
 }
 
 /// How linear systems are solved.

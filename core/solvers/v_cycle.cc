@@ -102,8 +102,8 @@ Eigen::MatrixXd CycleFrom(const std::vector<CycleSpace>& spaces,
 
 // Returns signs that are the same in every run, and to which no mode of a
 // specimen is orthogonal but by accident.
-Eigen::VectorXd RandomSigns(Eigen::Index size) {
-  std::minstd_rand random(1);
+Eigen::VectorXd RandomSigns(Eigen::Index size, const Ranks* ranks) {
+  std::minstd_rand random(ranks == nullptr ? 1 : 1 + ranks->Rank());
   return Eigen::VectorXd::NullaryExpr(
       size, [&] { return random() % 2 == 0 ? 1.0 : -1.0; });
 }
@@ -132,8 +132,9 @@ Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
 
 double LargestEigenvalue(const ColumnOperator& multiply,
                          const Eigen::MatrixXd& inverse_blocks,
-                         int& num_products) {
+                         int& num_products, const Ranks* ranks) {
   ConjugateGradientOptions options;
+  options.ranks = ranks;
   options.tolerance = 0;
   options.most_iterations = kSteps;
   const ConjugateGradientResult result = SolveByConjugateGradients(
@@ -141,7 +142,7 @@ double LargestEigenvalue(const ColumnOperator& multiply,
       [&](const Eigen::MatrixXd& x) {
         return MultiplyBlocks(inverse_blocks, x);
       },
-      multiply(RandomSigns(inverse_blocks.cols())), {}, options);
+      multiply(RandomSigns(inverse_blocks.cols(), ranks)), {}, options);
   num_products += 1 + result.products;
   // A few elements have fewer directions than there are steps.  Where not even
   // the first direction has a positive energy, K is not positive definite.

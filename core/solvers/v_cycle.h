@@ -39,10 +39,11 @@ struct CycleSpace {
 /// Estimates the largest eigenvalue of D^-1 K for the diagonal blocks D; the
 /// estimate may be a tenth too small.  The result is NaN where K is seen not to
 /// be positive definite.  Takes 6 products; their number is added to
-/// `num_products`.
+/// `num_products`.  Where several ranks have the rows, all of them call it.
 [[nodiscard]] double LargestEigenvalue(const ColumnOperator& multiply,
                                        const Eigen::MatrixXd& inverse_blocks,
-                                       int& num_products);
+                                       int& num_products,
+                                       const Ranks* ranks = nullptr);
 
 }  // namespace elastimate
 

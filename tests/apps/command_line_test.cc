@@ -238,6 +238,7 @@ constexpr const char* kDocumentedKeys[] = {
     "/work/multigrid_set_ups",
     "/work/solves",
     "/work/iterations",
+    "/work/ranks",
     "/options/solver",
     "/seconds/read",
     "/seconds/estimate",

@@ -1,0 +1,130 @@
+// Runs the program as several processes of MPI.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/solvers/multigrid.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "tests/program.h"
+
+namespace elastimate::testing {
+namespace {
+
+class SolvesOfRanks : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    if (std::string(ELASTIMATE_MPIRUN).empty() || !HasMultigrid()) {
+      GTEST_SKIP() << "there is no mpirun, or no PETSc";
+    }
+  }
+
+  // Runs the program with these arguments as so many processes.
+  ProgramRun RunOn(int num_ranks, const std::string& arguments) const {
+    return RunRanks("-n " + std::to_string(num_ranks) +
+                    " '" ELASTIMATE_PROGRAM "' " + arguments);
+  }
+
+  ProgramRun RunRanks(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.string() +
+        "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+        "OMP_NUM_THREADS=1 '" ELASTIMATE_MPIRUN "' --oversubscribe " +
+        arguments + " >.output 2>.errors </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            ReadText(folder_ / ".output"), ReadText(folder_ / ".errors")};
+  }
+
+  nlohmann::json EstimateOn(int num_ranks, const std::string& arguments) const {
+    const ProgramRun run =
+        RunOn(num_ranks, "estimate " + arguments +
+                             " --solver=multigrid --json=- --out=out.vtu");
+    EXPECT_EQ(run.exit_code, 0) << arguments << "\n" << run.errors;
+    return nlohmann::json::parse(run.output);
+  }
+};
+
+TEST_F(SolvesOfRanks, GiveTheEstimateOfOne) {
+  Succeed("generate cuboid --cells=5,4,6 --out=block.vtu");
+  const std::string simulate =
+      "simulate block.vtu --youngs=1e8 --nu=0.3 --noise=0.01 ";
+  Succeed(simulate + "--out=computed.vtu");
+  Succeed(simulate + "--order=2 --out=measured.vtu");
+  struct Fit {
+    std::string arguments;
+    double tolerance;
+    std::vector<int> ranks;
+  };
+  // Fits with quadratic elements solve their systems to 1e-5.
+  for (const Fit& fit :
+       {Fit{"computed.vtu --estimator=reduced-fe", 1e-8, {2, 3, 4}},
+        Fit{"computed.vtu --estimator=iterative-fe", 1e-8, {3}},
+        Fit{"measured.vtu --estimator=auto", 1e-6, {2}}}) {
+    const nlohmann::json of_one = EstimateOn(1, fit.arguments);
+    EXPECT_EQ(of_one["work"]["ranks"], 1);
+    for (const int num_ranks : fit.ranks) {
+      SCOPED_TRACE(fit.arguments + " on " + std::to_string(num_ranks));
+      const nlohmann::json report = EstimateOn(num_ranks, fit.arguments);
+      EXPECT_EQ(report["work"]["ranks"], num_ranks);
+      EXPECT_EQ(report["work"]["factorizations"], 0);
+      for (const std::string name : {"youngs_modulus", "poisson_ratio"}) {
+        const double expected = of_one[name].get<double>();
+        EXPECT_NEAR(report[name].get<double>(), expected,
+                    fit.tolerance * std::abs(expected))
+            << name;
+      }
+    }
+  }
+}
+
+TEST_F(SolvesOfRanks, SimulateWhatOneDoes) {
+  for (const std::string shape :
+       {"cuboid --cells=5,4,7", "organ --tetrahedra=600", "rectangle",
+        "cuboid --elements=hex8"}) {
+    Succeed("generate " + shape + " --out=body.vtu");
+    for (const int num_ranks : {1, 3}) {
+      const ProgramRun run = RunOn(num_ranks,
+                                   "simulate body.vtu --youngs=1e5 --nu=0.3 "
+                                   "--solver=multigrid --out=" +
+                                       std::to_string(num_ranks) + ".vtu");
+
+      ASSERT_EQ(run.exit_code, 0) << run.errors;
+      EXPECT_EQ(run.errors.find("factorised"), std::string::npos) << run.errors;
+    }
+    const auto displacement = [&](const std::string& file) {
+      return ReadScene({folder_ / file}, Measurement::kOptional)
+          .scene.load_cases[0]
+          .displacement;
+    };
+    EXPECT_TRUE(displacement("3.vtu").isApprox(displacement("1.vtu"), 1e-7))
+        << shape;
+  }
+}
+
+TEST_F(SolvesOfRanks, RefuseWithOneSentence) {
+  const ProgramRun run = RunOn(3, "estimate none.vtu --out=out.vtu");
+  EXPECT_EQ(run.exit_code, 2);
+  const std::size_t place = run.errors.find("none.vtu");
+  EXPECT_NE(place, std::string::npos) << run.errors;
+  EXPECT_EQ(run.errors.find("none.vtu", place + 1), std::string::npos)
+      << run.errors;
+  EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(SolvesOfRanks, EndWhereOneIsLost) {
+  Succeed("generate cuboid --out=block.vtu");
+  const ProgramRun run =
+      RunRanks("-n 1 '" ELASTIMATE_PROGRAM
+               "' simulate block.vtu --youngs=1e5 --nu=0.3 --solver=multigrid "
+               "--out=out.vtu : -n 1 false");
+  EXPECT_NE(run.exit_code, 0);
+  EXPECT_EQ(Files().count((folder_ / "out.vtu").string()), 0U);
+}
+
+}  // namespace
+}  // namespace elastimate::testing
