@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "elastimate/estimators/maps/estimate_map.h"
 #include "tests/estimators/maps/map_scenes.h"
@@ -8,11 +9,7 @@
 namespace elastimate::testing {
 namespace {
 
-// A stiff box off the centre of a block of tetrahedra, whose displacements a
-// finer world made.
-TEST(HeldOutBlockLong, FindsABoxThatAFinerWorldMeasured) {
-  const MapScene truth = HeldOutBlock(5, 0.01);
-  const MapEstimate map = EstimateMap(truth.scene, {});
+void ExpectTwoRegions(const MapEstimate& map) {
   ASSERT_TRUE(map.IsUsable());
   EXPECT_EQ(map.element_order, 2);
   ASSERT_EQ(map.verdict, MapVerdict::kRegions);
@@ -21,10 +18,36 @@ TEST(HeldOutBlockLong, FindsABoxThatAFinerWorldMeasured) {
               3 * map.regions[0].standard_error);
   EXPECT_NEAR(map.regions[1].youngs_modulus, 6,
               3 * map.regions[1].standard_error);
+  EXPECT_LT(map.regions[1].standard_error, 1.5);
+  EXPECT_NEAR(map.poisson_ratio, 0.35, 3 * std::sqrt(map.covariance(1, 1)));
   EXPECT_TRUE(std::none_of(map.findings.begin(), map.findings.end(),
                            [](const Finding& finding) {
                              return finding.code == FindingCode::kMayBeTheMesh;
                            }));
+}
+
+// A stiff box off the centre of a block of tetrahedra, whose displacements a
+// finer world made.
+TEST(HeldOutBlockLong, FindsABoxThatAFinerWorldMeasured) {
+  const MapEstimate map = EstimateMap(HeldOutBlock(5, 0.01).scene, {});
+  ExpectTwoRegions(map);
+  EXPECT_FALSE(map.boundary);
+}
+
+TEST(HeldOutBlockLong, FindsABallThatCutsElements) {
+  const MapEstimate map = EstimateMap(HeldOutBall(5, 0.01).scene, {});
+  ExpectTwoRegions(map);
+  ASSERT_TRUE(map.boundary);
+  EXPECT_GT(map.boundary->youngs_modulus, 2);
+  EXPECT_LT(map.boundary->youngs_modulus, 6);
+  double volume = map.boundary->volume;
+  for (const MapRegion& region : map.regions) {
+    volume += region.volume;
+  }
+  EXPECT_NEAR(volume, 1.2, 1e-9);
+  const auto num_cut = std::count(map.region_of_element.begin(),
+                                  map.region_of_element.end(), -1);
+  EXPECT_GT(num_cut, 0);
 }
 
 }  // namespace

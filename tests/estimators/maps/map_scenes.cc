@@ -171,8 +171,9 @@ MapScene MakeSpecimen(const std::string& name, ElementKind kind, int cells,
   return made.map;
 }
 
-MapScene HeldOutBlock(int cells, double relative_noise) {
-  MapScene map;
+namespace {
+
+Scene BlockUnderTraction(int cells) {
   Scene scene =
       UnsupportedScene(BoxMesh({cells, cells, cells + 1}, {1, 1, 1.2}));
   HoldInBox(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 0), scene);
@@ -180,18 +181,21 @@ MapScene HeldOutBlock(int cells, double relative_noise) {
   scene.load_cases[0].loads = {
       TractionInBox(scene.mesh, Eigen::Vector3d(0, 0, 1.2),
                     Eigen::Vector3d(1, 1, 1.2), Eigen::Vector3d(0.3, 0, -1))};
-  const Eigen::Index num_elements = scene.mesh.NumElements();
-  map.log_moduli.resize(num_elements);
-  scene.mesh.regions.resize(num_elements);
-  for (Eigen::Index e = 0; e < num_elements; ++e) {
-    const Eigen::Vector3d centre = ElementCentre(scene.mesh, e);
-    const bool is_stiff = centre(0) > 0.35 && centre(1) < 0.7 &&
-                          centre(2) > 0.4 && centre(2) < 1.05;
-    scene.mesh.regions(e) = is_stiff ? 1 : 0;
-    map.log_moduli(e) = std::log(is_stiff ? 6.0 : 2.0);
+  return scene;
+}
+
+// Makes elements three times as stiff where their centre is.
+template <class IsStiff>
+void MakeStiff(const IsStiff& is_stiff, Scene& scene) {
+  scene.mesh.regions.resize(scene.mesh.NumElements());
+  for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+    scene.mesh.regions(e) = is_stiff(ElementCentre(scene.mesh, e)) ? 1 : 0;
   }
   scene.materials = IsotropicMaterialOfEachRegion(scene.mesh);
-  Scene world = QuadraticScene(LinearScene(QuadraticScene(scene)));
+}
+
+MapScene MeasuredWithNoise(Scene world, Scene scene, double relative_noise) {
+  MapScene map;
   MeasureMaterials(Eigen::Vector4d(2, 0.35, 6, 0.35), world);
   TakeDisplacements(world, scene);
   scene.materials.clear();
@@ -199,6 +203,31 @@ MapScene HeldOutBlock(int cells, double relative_noise) {
   map.noise_sd = AddNoise(relative_noise, 1, scene);
   map.scene = scene;
   return map;
+}
+
+}  // namespace
+
+MapScene HeldOutBlock(int cells, double relative_noise) {
+  Scene scene = BlockUnderTraction(cells);
+  MakeStiff(
+      [](const Eigen::Vector3d& centre) {
+        return centre(0) > 0.35 && centre(1) < 0.7 && centre(2) > 0.4 &&
+               centre(2) < 1.05;
+      },
+      scene);
+  return MeasuredWithNoise(QuadraticScene(LinearScene(QuadraticScene(scene))),
+                           scene, relative_noise);
+}
+
+MapScene HeldOutBall(int cells, double relative_noise) {
+  const Scene scene = BlockUnderTraction(cells);
+  Scene world = LinearScene(QuadraticScene(scene));
+  MakeStiff(
+      [](const Eigen::Vector3d& centre) {
+        return (centre - Eigen::Vector3d(0.56, 0.45, 0.65)).norm() < 0.3;
+      },
+      world);
+  return MeasuredWithNoise(QuadraticScene(world), scene, relative_noise);
 }
 
 double MapError(const Eigen::VectorXd& estimate, const Eigen::VectorXd& truth) {

@@ -48,6 +48,11 @@ MapScene MakeSpecimen(const std::string& name, ElementKind kind, int cells,
 /// world of quadratic elements of half the size.
 MapScene HeldOutBlock(int cells, double relative_noise);
 
+/// Returns the same block with a ball instead of the box, which the mesh does
+/// not know: elements of half of its size, with which it was measured, are in
+/// the ball where their centre is.
+MapScene HeldOutBall(int cells, double relative_noise);
+
 /// Returns |estimate - truth| / |truth - mean|, both without their mean; for a
 /// homogeneous truth the root mean square of the estimate without its mean.
 double MapError(const Eigen::VectorXd& estimate, const Eigen::VectorXd& truth);
