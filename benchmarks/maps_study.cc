@@ -154,7 +154,9 @@ class MapRun {
   double Seconds() const { return seconds_; }
   MapState Sharpened() { return SharpenMap(problem_, prior_, *smooth_); }
   std::optional<RegionMap> Regions(const MapState& sharpened) {
-    return FitRegions(problem_, prior_, sharpened, *homogeneous_);
+    const std::vector<RegionMap> maps =
+        FitRegions(problem_, prior_, sharpened, *homogeneous_);
+    return maps.empty() ? std::nullopt : std::optional<RegionMap>(maps.front());
   }
   Eigen::VectorXd Lengths() const {
     return ResolutionLengths(problem_, prior_, *smooth_);

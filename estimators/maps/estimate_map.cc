@@ -37,6 +37,8 @@ constexpr double kLeastRedundancy = 4;
 // from its mesh.
 constexpr double kOfTheMesh = 0.05;
 constexpr double kResolved = 3;
+// Two moduli differ where ln E does by so many standard deviations.
+constexpr double kToldApart = 2;
 // The part of an element's modulus that the data tell, V_e / l_e^d, from which
 // on smaller elements would show more.
 constexpr double kResolvedElements = 0.5;
@@ -150,17 +152,18 @@ class MapBuilder {
             ? ResolutionLengths(problem_, *prior_, smooth)
             : Eigen::VectorXd::Constant(prior_->NumElements(), prior_->Size());
     const MapState sharpened = SharpenMap(problem_, *prior_, smooth);
-    const std::optional<RegionMap> regions =
+    const std::vector<RegionMap> regions =
         FitRegions(problem_, *prior_, sharpened, *homogeneous);
     map_.field_log_evidence = smooth.log_evidence;
-    map_.region_log_evidence = regions ? regions->log_evidence : 0;
+    map_.region_log_evidence =
+        regions.empty() ? 0 : regions.front().log_evidence;
     const bool are_regions =
-        regions && map_.region_log_evidence >= map_.field_log_evidence;
+        !regions.empty() && map_.region_log_evidence >= map_.field_log_evidence;
     const double best =
         are_regions ? map_.region_log_evidence : map_.field_log_evidence;
     const double explained =
         homogeneous->square_sum -
-        (are_regions ? regions->fit.square_sum : smooth.square_sum);
+        (are_regions ? regions.front().fit.square_sum : smooth.square_sum);
     const bool is_of_mesh = best >= kLeastEvidence && explained <= of_mesh_;
     if (is_of_mesh) {
       map_.findings.push_back(
@@ -174,8 +177,7 @@ class MapBuilder {
                    variance * homogeneous->unknowns.InverseGram());
     } else if (are_regions) {
       map_.verdict = MapVerdict::kRegions;
-      EnterRegions(regions->region_of_element, regions->fit, regions->variance,
-                   regions->covariance);
+      EnterRegionsThatAreToldApart(regions);
     } else {
       map_.verdict = MapVerdict::kField;
       EnterField(smooth);
@@ -296,16 +298,64 @@ class MapBuilder {
     return regions;
   }
 
+  Eigen::MatrixXd MeshCovariance(const std::vector<int>& region_of_element,
+                                 const LevelFit& fit) {
+    const Eigen::Index size = fit.levels.size() + 1;
+    return mesh_error_
+               ? mesh_error_->CovarianceOf(*prior_, region_of_element, fit)
+               : Eigen::MatrixXd::Zero(size, size);
+  }
+
+  // Enters the best regions.  The evidence does not know what the elements may
+  // miss.  Where that hides whether two of three regions differ, these are no
+  // regions: the middle one of three is a boundary if it may be of both sides,
+  // and else the best two regions are entered.
+  void EnterRegionsThatAreToldApart(const std::vector<RegionMap>& maps) {
+    const RegionMap* entered = &maps.front();
+    bool has_boundary = false;
+    if (entered->fit.levels.size() == 3) {
+      const Eigen::MatrixXd covariance =
+          entered->covariance +
+          MeshCovariance(entered->region_of_element, entered->fit);
+      const bool differs_from_first =
+          AreToldApart(entered->fit.levels, covariance, 0, 1);
+      const bool differs_from_last =
+          AreToldApart(entered->fit.levels, covariance, 1, 2);
+      has_boundary =
+          IsBoundaryLayer(scene_.mesh, prior_->Volumes(),
+                          entered->region_of_element, entered->fit.levels) ||
+          (!differs_from_first && !differs_from_last &&
+           AreToldApart(entered->fit.levels, covariance, 0, 2));
+      if (!has_boundary && !(differs_from_first && differs_from_last)) {
+        entered = &maps.back();
+      }
+    }
+    EnterRegions(entered->region_of_element, entered->fit, entered->variance,
+                 entered->covariance);
+    if (has_boundary) {
+      map_.boundary = map_.regions[1];
+      map_.regions.erase(map_.regions.begin() + 1);
+      for (int& region : map_.region_of_element) {
+        region = region == 1 ? -1 : region / 2;
+      }
+    }
+  }
+
+  static bool AreToldApart(const Eigen::VectorXd& levels,
+                           const Eigen::MatrixXd& covariance, Eigen::Index i,
+                           Eigen::Index j) {
+    const double variance =
+        covariance(i, i) + covariance(j, j) - 2 * covariance(i, j);
+    return std::abs(levels(i) - levels(j)) > kToldApart * std::sqrt(variance);
+  }
+
   void EnterRegions(const std::vector<int>& region_of_element,
                     const LevelFit& fit, double variance,
                     Eigen::MatrixXd covariance) {
-    const Eigen::MatrixXd of_mesh =
-        mesh_error_
-            ? mesh_error_->CovarianceOf(*prior_, region_of_element, fit)
-            : Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
+    const Eigen::MatrixXd of_mesh = MeshCovariance(region_of_element, fit);
     covariance += of_mesh;
     const Eigen::Index n = fit.levels.size();
-    std::vector<MapRegion> regions = RegionsOf(
+    const std::vector<MapRegion> regions = RegionsOf(
         region_of_element, fit.levels, covariance.diagonal().cwiseSqrt());
     Eigen::VectorXd volumes(n);
     Eigen::VectorXd errors(n);
@@ -324,15 +374,7 @@ class MapBuilder {
         OfParameters(fit.state, means * of_mesh * means.transpose());
     EnterNoise(fit.state, variance);
     map_.region_of_element = region_of_element;
-    if (IsBoundaryLayer(scene_.mesh, prior_->Volumes(), region_of_element,
-                        fit.levels)) {
-      map_.boundary = regions[1];
-      regions.erase(regions.begin() + 1);
-      for (int& region : map_.region_of_element) {
-        region = region == 1 ? -1 : region / 2;
-      }
-    }
-    map_.regions = std::move(regions);
+    map_.regions = regions;
   }
 
   void EnterField(const SmoothMap& smooth) {

@@ -354,13 +354,12 @@ class RegionSearch {
 
 }  // namespace
 
-std::optional<RegionMap> FitRegions(const MapProblem& problem,
-                                    const FieldPrior& prior,
-                                    const MapState& sharpened,
-                                    const LevelFit& homogeneous) {
+std::vector<RegionMap> FitRegions(const MapProblem& problem,
+                                  const FieldPrior& prior,
+                                  const MapState& sharpened,
+                                  const LevelFit& homogeneous) {
   const Eigen::Index num_rows = problem.model.NumIndependentRows();
-  std::optional<RegionMap> best;
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<RegionMap> maps;
   const RegionSearch whole(
       problem, prior, std::vector<int>(std::size_t(prior.NumElements()), 0),
       homogeneous);
@@ -387,13 +386,14 @@ std::optional<RegionMap> FitRegions(const MapProblem& problem,
     }
     RegionSearch search(problem, prior, regions, *fit);
     search.Improve();
-    if (search.Criterion() < least) {
-      least = search.Criterion();
-      best = search.Result();
-      best->log_evidence = (whole.Criterion() - least) / 2;
-    }
+    maps.push_back(search.Result());
+    maps.back().log_evidence = (whole.Criterion() - search.Criterion()) / 2;
   }
-  return best;
+  std::stable_sort(maps.begin(), maps.end(),
+                   [](const RegionMap& a, const RegionMap& b) {
+                     return a.log_evidence > b.log_evidence;
+                   });
+  return maps;
 }
 
 }  // namespace elastimate

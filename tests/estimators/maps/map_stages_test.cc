@@ -41,7 +41,10 @@ struct Stages {
     smooth = FitSmoothMap(problem, prior, *homogeneous);
     errors = DescribeMap(problem, prior, *smooth);
     sharpened = SharpenMap(problem, prior, *smooth);
-    regions = FitRegions(problem, prior, sharpened, *homogeneous);
+    for (const RegionMap& map :
+         FitRegions(problem, prior, sharpened, *homogeneous)) {
+      regions = regions ? regions : map;
+    }
   }
 
   double ErrorOf(const MapState& state) const {
