@@ -98,7 +98,6 @@ bool StiffnessSolver::FactorizeValues() {
 void StiffnessSolver::FallBackToCholesky(const std::string& why) {
   notice_ = "multigrid " + why + ", so the stiffness matrix was factorised";
   is_multigrid_ = false;
-  work_.ranks = 1;
   solver_.reset();  // Its memory is needed.
   solver_ = std::make_unique<Cholesky>(*assembly_, degrees_of_freedom_);
 }

@@ -174,6 +174,28 @@ TEST(EstimateMap, DoesNotDependOnUnits) {
 
 // The inclusion is seen less by noisier data, and its contrast falls with its
 // diameter over the resolution length.
+TEST(EstimateMap, TakesALayerOfOneElementForABoundary) {
+  const MapEstimate map = EstimateMap(
+      MakeMapScene("thin", ElementKind::kQuad4, 16, 0.003).scene, {});
+  ASSERT_TRUE(map.IsUsable());
+  ASSERT_EQ(map.regions.size(), 2U);
+  ASSERT_TRUE(map.boundary);
+  const MapRegion expected[] = {map.regions[0], *map.boundary, map.regions[1]};
+  const double moduli[] = {1, 2, 4};
+  const double volumes[] = {0.5, 0.0625, 0.4375};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(expected[i].youngs_modulus, moduli[i],
+                4 * expected[i].standard_error);
+    EXPECT_NEAR(expected[i].volume, volumes[i], 1e-9);
+  }
+  EXPECT_EQ(std::count(map.region_of_element.begin(),
+                       map.region_of_element.end(), -1),
+            16);
+  EXPECT_EQ(*std::max_element(map.region_of_element.begin(),
+                              map.region_of_element.end()),
+            1);
+}
+
 TEST(EstimateMap, SaysWhatIsNotResolved) {
   const MapScene sharp = MakeMapScene("inc5", kQuads, 16, 0.003);
   EXPECT_FALSE(

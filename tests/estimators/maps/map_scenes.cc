@@ -98,6 +98,9 @@ double LogModulusAt(const std::string& name, const Eigen::VectorXd& point) {
     const double layers[] = {1, 3, 1, 2};
     return std::log(layers[std::min(3, int(4 * height))]);
   }
+  if (name == "thin") {
+    return std::log(height < 0.5 ? 1.0 : height < 0.5625 ? 2.0 : 4.0);
+  }
   throw std::invalid_argument("no map " + name);
 }
 
@@ -224,7 +227,7 @@ MapScene HeldOutBall(int cells, double relative_noise) {
   Scene world = LinearScene(QuadraticScene(scene));
   MakeStiff(
       [](const Eigen::Vector3d& centre) {
-        return (centre - Eigen::Vector3d(0.56, 0.45, 0.65)).norm() < 0.3;
+        return (centre - Eigen::Vector3d(0.56, 0.45, 0.65)).norm() < 0.33;
       },
       world);
   return MeasuredWithNoise(QuadraticScene(world), scene, relative_noise);

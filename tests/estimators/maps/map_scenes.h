@@ -26,6 +26,7 @@ struct MapScene {
 ///   two     5 times as stiff within 0.12 (0.15) about (0.5 -+ 0.17, 0.5)
 ///   grad    ln 3 (height - 0.5) + 0.3 sin 2 pi x
 ///   lay     layers of E = 1, 3, 1, 2 from the base up
+///   thin    E = 1 below 0.5, 4 above 0.5625, and 2 between
 double LogModulusAt(const std::string& name, const Eigen::VectorXd& point);
 
 /// Returns the unit square (plane strain) or cube of `cells` elements along
