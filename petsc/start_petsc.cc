@@ -12,7 +12,8 @@ namespace elastimate {
 namespace {
 
 void Start() {
-  std::string why_not;  // What wants multigrid finds that it has not started.
+  std::string
+      why_not;  // Code that needs multigrid finds that PETSc does not run.
   static auto* const start = FindInModule<decltype(elastimate_start_petsc)>(
       ELASTIMATE_PETSC_MODULE, "elastimate_start_petsc", why_not);
   if (start != nullptr) {

@@ -21,7 +21,7 @@ void StartPetscWhenNeeded();
 /// all of them and divides solves among them (ShareSolves): on rank 0 it
 /// returns true, and on the others false once rank 0 has ended.  They then have
 /// nothing left to do.  Without PETSc they have nothing to do at once.
-/// Elsewhere it returns true and starts nothing.  For a program that has called
+/// Elsewhere it returns true and starts nothing.  The program must have called
 /// StartPetscWhenNeeded.
 [[nodiscard]] bool StartRanks();
 

@@ -33,8 +33,7 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
       has_unknown_motion_(HasUnknownMotion(*spaces.back())),
-      tolerance_(UsedSpaces(spaces).size() > 1 ? tolerance
-                                               : StiffnessSolver::kAccurate) {
+      tolerance_(IsRefined() ? tolerance : StiffnessSolver::kAccurate) {
   const Scene& scene = *spaces.back();
   const HeldGroups groups = GroupByHeld(scene);
   stiffness_of_case_ = groups.of_case;

@@ -59,12 +59,12 @@ Eigen::SparseMatrix<double> Sparse(const BlockMatrix& a) {
   return result;
 }
 
-// Returns the whole of a matrix, of which this rank has these rows, the first
-// of which is row `first`.
+// Returns the whole of a matrix of this size, of which this rank has the rows
+// from `first` on.
 Eigen::SparseMatrix<double> OfAllRanks(const Eigen::SparseMatrix<double>& own,
-                                       Eigen::Index first, const Halo& halo,
-                                       const Ranks& ranks) {
-  // What the rows of other ranks are called, those ranks know.
+                                       Eigen::Index first, Eigen::Index size,
+                                       const Halo& halo, const Ranks& ranks) {
+  // The halo brings the numbers over all ranks, as each knows those of its own.
   const Eigen::VectorXd column = halo.WithOthers(Eigen::VectorXd::LinSpaced(
       own.rows(), double(first), double(first + own.rows() - 1)));
   Eigen::MatrixXd entries(own.nonZeros(), 3);
@@ -79,7 +79,6 @@ Eigen::SparseMatrix<double> OfAllRanks(const Eigen::SparseMatrix<double>& own,
   for (const auto& entry : entries.rowwise()) {
     triplets.emplace_back(int(entry(0)), int(entry(1)), entry(2));
   }
-  const Eigen::Index size = NumBeforeAndInAll(own.rows(), ranks).second;
   Eigen::SparseMatrix<double> all(size, size);
   all.setFromTriplets(triplets.begin(), triplets.end());
   return all;
@@ -148,9 +147,9 @@ bool AlgebraicMultigrid::FactorizeCoarsest() {
       spaces_.matrices.empty() ? rows_.Matrix() : spaces_.matrices.front();
   Eigen::SparseMatrix<double> matrix = Sparse(divided.rows);
   if (rows_.ranks != nullptr) {
-    first_of_coarsest_ = NumBeforeAndInAll(matrix.rows(), *rows_.ranks).first;
-    matrix =
-        OfAllRanks(matrix, first_of_coarsest_, *divided.halo, *rows_.ranks);
+    const auto [first, size] = NumBeforeAndInAll(matrix.rows(), *rows_.ranks);
+    first_of_coarsest_ = first;
+    matrix = OfAllRanks(matrix, first, size, *divided.halo, *rows_.ranks);
   }
   const Eigen::VectorXd diagonal = matrix.diagonal();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
@@ -239,7 +238,7 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
           : std::clamp(int(kMostSlowdown * iterations_per_digit_ * digits),
                        kLeastIterationsOfOthers, kMostIterations);
   options.smallest_eigenvalue = smallest_eigenvalue_;
-  const ConjugateGradientResult result = SolveByConjugateGradients(
+  ConjugateGradientResult result = SolveByConjugateGradients(
       [&](const Eigen::MatrixXd& x) {
         return MultiplyAccurately(rows_.Matrix(), x);
       },
@@ -264,7 +263,7 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
     // With a good guess, few iterations tell nothing of the spaces.
     iterations_per_digit_ = std::max(iterations_per_digit_, per_digit);
   }
-  return result.solution;
+  return std::move(result.solution);
 }
 
 }  // namespace elastimate

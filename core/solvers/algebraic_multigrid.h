@@ -70,8 +70,8 @@ class AlgebraicMultigrid {
   /// with spaces of its own matrix; 0 before any.
   double iterations_per_digit_ = 0;
   /// The smallest eigenvalue of the preconditioned matrix that any solution
-  /// met, for any matrix and spaces: one that begins with a good guess ends
-  /// before it meets that of its own.
+  /// met, for any matrix and spaces: a solution with a good guess ends before
+  /// it meets the smallest one of its own matrix.
   double smallest_eigenvalue_ = 1;
   int num_iterations_ = 0;
   int num_set_ups_ = 0;

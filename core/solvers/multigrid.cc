@@ -50,7 +50,7 @@ bool FindSpaces(MultigridRows& rows, MultigridSpaces& spaces) {
   return TheModule().find_spaces(rows, spaces);
 }
 
-// Those that share the solves; null for one process.
+// The ranks that share the solves.  It is null where one process solves alone.
 const Ranks* ranks_of_solves = nullptr;
 
 }  // namespace

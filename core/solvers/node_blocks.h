@@ -30,8 +30,8 @@ class NodeBlocks {
   /// Returns the row of the matrix for each free degree of freedom.
   std::vector<int> RowsOfFree() const;
   /// Returns the matrix of these values, which are in the order of a
-  /// StiffnessAssembly, with its `rest`.  The columns of a row ascend by node,
-  /// so by number only without an order.
+  /// StiffnessAssembly, with its `rest`.  The columns of a row ascend by node;
+  /// they ascend by number only if there is no order.
   [[nodiscard]] BlockMatrix MatrixOf(const Eigen::VectorXd& values) const;
 
  private:

@@ -12,8 +12,8 @@ namespace elastimate {
 /// elements that the boundary between the other two cuts: its modulus lies
 /// between theirs, and at least nine tenths of its volume is in elements that
 /// share a node with both.  A layer of a third material that is as thin as an
-/// element looks the same.  False where there are not three levels.  `volumes`
-/// are those of the elements.  O(num_elements).
+/// element looks the same.  It is false unless there are three levels.
+/// `volumes` are those of the elements.  O(num_elements).
 [[nodiscard]] bool IsBoundaryLayer(const Mesh& mesh,
                                    const Eigen::VectorXd& volumes,
                                    const std::vector<int>& region_of_element,

@@ -174,7 +174,8 @@ class MapBuilder {
           homogeneous->square_sum,
           double(model_.NumIndependentRows() - homogeneous->unknowns.Rank()));
       EnterRegions(whole, *homogeneous, variance,
-                   variance * homogeneous->unknowns.InverseGram());
+                   variance * homogeneous->unknowns.InverseGram(),
+                   MeshCovariance(whole, *homogeneous));
     } else if (are_regions) {
       map_.verdict = MapVerdict::kRegions;
       EnterRegionsThatAreToldApart(regions);
@@ -307,31 +308,36 @@ class MapBuilder {
   }
 
   // Enters the best regions.  The evidence does not know what the elements may
-  // miss.  Where that hides whether two of three regions differ, these are no
-  // regions: the middle one of three is a boundary if it may be of both sides,
-  // and else the best two regions are entered.
+  // miss.  Where that hides whether two of three regions differ, the middle one
+  // is a boundary if its modulus may be that of either side, and else the best
+  // two regions are entered.
   void EnterRegionsThatAreToldApart(const std::vector<RegionMap>& maps) {
-    const RegionMap* entered = &maps.front();
+    const RegionMap& best = maps.front();
+    const Eigen::VectorXd& levels = best.fit.levels;
+    const Eigen::MatrixXd of_mesh =
+        MeshCovariance(best.region_of_element, best.fit);
+    bool differs_from_first = true;
+    bool differs_from_last = true;
     bool has_boundary = false;
-    if (entered->fit.levels.size() == 3) {
-      const Eigen::MatrixXd covariance =
-          entered->covariance +
-          MeshCovariance(entered->region_of_element, entered->fit);
-      const bool differs_from_first =
-          AreToldApart(entered->fit.levels, covariance, 0, 1);
-      const bool differs_from_last =
-          AreToldApart(entered->fit.levels, covariance, 1, 2);
-      has_boundary =
-          IsBoundaryLayer(scene_.mesh, prior_->Volumes(),
-                          entered->region_of_element, entered->fit.levels) ||
-          (!differs_from_first && !differs_from_last &&
-           AreToldApart(entered->fit.levels, covariance, 0, 2));
-      if (!has_boundary && !(differs_from_first && differs_from_last)) {
-        entered = &maps.back();
-      }
+    if (levels.size() == 3) {
+      const Eigen::MatrixXd covariance = best.covariance + of_mesh;
+      differs_from_first = AreToldApart(levels, covariance, 0, 1);
+      differs_from_last = AreToldApart(levels, covariance, 1, 2);
+      has_boundary = IsBoundaryLayer(scene_.mesh, prior_->Volumes(),
+                                     best.region_of_element, levels) ||
+                     (!differs_from_first && !differs_from_last &&
+                      AreToldApart(levels, covariance, 0, 2));
     }
-    EnterRegions(entered->region_of_element, entered->fit, entered->variance,
-                 entered->covariance);
+    const bool are_materials =
+        has_boundary || (differs_from_first && differs_from_last);
+    if (!are_materials && maps.size() > 1) {
+      const RegionMap& two = maps.back();
+      EnterRegions(two.region_of_element, two.fit, two.variance, two.covariance,
+                   MeshCovariance(two.region_of_element, two.fit));
+      return;
+    }
+    EnterRegions(best.region_of_element, best.fit, best.variance,
+                 best.covariance, of_mesh);
     if (has_boundary) {
       map_.boundary = map_.regions[1];
       map_.regions.erase(map_.regions.begin() + 1);
@@ -351,8 +357,8 @@ class MapBuilder {
 
   void EnterRegions(const std::vector<int>& region_of_element,
                     const LevelFit& fit, double variance,
-                    Eigen::MatrixXd covariance) {
-    const Eigen::MatrixXd of_mesh = MeshCovariance(region_of_element, fit);
+                    Eigen::MatrixXd covariance,
+                    const Eigen::MatrixXd& of_mesh) {
     covariance += of_mesh;
     const Eigen::Index n = fit.levels.size();
     const std::vector<MapRegion> regions = RegionsOf(

@@ -360,6 +360,7 @@ std::vector<RegionMap> FitRegions(const MapProblem& problem,
                                   const LevelFit& homogeneous) {
   const Eigen::Index num_rows = problem.model.NumIndependentRows();
   std::vector<RegionMap> maps;
+  double least = std::numeric_limits<double>::infinity();
   const RegionSearch whole(
       problem, prior, std::vector<int>(std::size_t(prior.NumElements()), 0),
       homogeneous);
@@ -386,13 +387,12 @@ std::vector<RegionMap> FitRegions(const MapProblem& problem,
     }
     RegionSearch search(problem, prior, regions, *fit);
     search.Improve();
-    maps.push_back(search.Result());
-    maps.back().log_evidence = (whole.Criterion() - search.Criterion()) / 2;
+    if (search.Criterion() < least) {
+      least = search.Criterion();
+      maps.insert(maps.begin(), search.Result());
+      maps.front().log_evidence = (whole.Criterion() - least) / 2;
+    }
   }
-  std::stable_sort(maps.begin(), maps.end(),
-                   [](const RegionMap& a, const RegionMap& b) {
-                     return a.log_evidence > b.log_evidence;
-                   });
   return maps;
 }
 

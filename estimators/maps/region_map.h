@@ -40,12 +40,13 @@ struct RegionMap {
 ///   BIC = N ln |r|^2 + k ln N + 2 (facets between regions)
 ///
 /// falls, with |r|^2 / sigma^2 for the first term where sigma is known. Returns
-/// the maps of k = 2 and k = 3, the better one first, but for those that could
-/// not be fitted, or where sigma is not known and there are fewer than three
-/// rows for each unknown.  Cost of each of at most 15 rounds: a solve for each
-/// element for which g delta + change < 0, the best 1000 moves at most, and
-/// some fits of levels; memory for num_rows numbers of each of these elements.
-/// The errors take one more such search, of elements with g delta + change < 6.
+/// the better map of k = 2 and k = 3 and, behind one of three regions, that of
+/// two.  Maps are left out that could not be fitted, or where sigma is not
+/// known and there are fewer than three rows for each unknown.  Cost of each of
+/// at most 15 rounds: a solve for each element for which g delta + change < 0,
+/// the best 1000 moves at most, and some fits of levels; memory for num_rows
+/// numbers of each of these elements. The errors take one more such search, of
+/// elements with g delta + change < 6.
 [[nodiscard]] std::vector<RegionMap> FitRegions(const MapProblem& problem,
                                                 const FieldPrior& prior,
                                                 const MapState& sharpened,

@@ -57,7 +57,7 @@ export function mapSection({ map }) {
     region.resolved ? "yes" : "no: narrower than three resolution lengths",
   ]);
   if (map.boundary) {
-    rows.push(["their boundary", ...values(map.boundary), "", "an element wide"]);
+    rows.push(["their boundary", ...values(map.boundary), "", ""]);
   }
   return section(
     "Map of Young's modulus",
