@@ -4,6 +4,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/large_strain_equilibrium.h"
@@ -39,10 +40,10 @@ Eigen::MatrixXd LargeDisplacements(const Scene& scene,
   return solution.displacement;
 }
 
-Eigen::MatrixXd SmallDisplacements(const Scene& scene,
+Eigen::MatrixXd SmallDisplacements(const std::vector<const Scene*>& spaces,
                                    const Eigen::VectorXd& parameters) {
   try {
-    return DisplacementsAt(scene, parameters);
+    return DisplacementsAt(spaces, parameters);
   } catch (const std::runtime_error&) {
     throw std::invalid_argument(
         "the stiffness matrix is singular to working precision; check the mesh "
@@ -59,11 +60,14 @@ Scene SimulatedScene(const Scene& scene, const Eigen::VectorXd& parameters,
   const bool is_raised = order > scene.mesh.Order();
   const std::optional<Scene> quadratic =
       is_raised ? std::optional<Scene>(QuadraticScene(scene)) : std::nullopt;
-  const Scene& modelled = quadratic ? *quadratic : scene;
+  std::vector<const Scene*> spaces = {&scene};
+  if (quadratic) {
+    spaces.push_back(&*quadratic);
+  }
   const bool is_large = HasLargeStrainLaw(scene.materials);
   const Eigen::MatrixXd displacements =
-      is_large ? LargeDisplacements(modelled, parameters)
-               : SmallDisplacements(modelled, parameters);
+      is_large ? LargeDisplacements(*spaces.back(), parameters)
+               : SmallDisplacements(spaces, parameters);
 
   Scene simulated = scene;
   MeasurementErrors errors;

@@ -1,6 +1,5 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
@@ -32,15 +31,13 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
-      has_unknown_motion_(HasUnknownMotion(*spaces.back())),
-      tolerance_(IsRefined() ? tolerance : StiffnessSolver::kAccurate) {
+      has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
   const Scene& scene = *spaces.back();
   const HeldGroups groups = GroupByHeld(scene);
   stiffness_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
-    AddStiffness(UsedSpaces(spaces), k, solver);
+    AddStiffness(UsedSpaces(spaces), k, solver, tolerance);
   }
-  SetTolerance(tolerance_);
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     held_displacement_.col(k) =
         elastimate::HeldDisplacement(SupportsOf(scene, k));
@@ -54,7 +51,8 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
 }
 
 void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
-                               Eigen::Index k, SolverKind solver) {
+                               Eigen::Index k, SolverKind solver,
+                               double tolerance) {
   std::vector<const Mesh*> meshes;
   std::vector<const Supports*> supports;
   for (const Scene* const space : spaces) {
@@ -62,8 +60,8 @@ void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
     supports.push_back(&SupportsOf(*space, k));
   }
   if (spaces.size() > 1) {
-    stiffness_.push_back(
-        std::make_unique<RefinedStiffness>(meshes, supports, solver));
+    stiffness_.push_back(std::make_unique<RefinedStiffness>(meshes, supports,
+                                                            solver, tolerance));
   } else {
     stiffness_.push_back(
         std::make_unique<AssembledStiffness>(*meshes[0], *supports[0], solver));
@@ -105,20 +103,6 @@ const NodeGraph& Equilibrium::Graph() const {
     graph_.emplace(*mesh_);
   }
   return *graph_;
-}
-
-void Equilibrium::SetTolerance(double tolerance) {
-  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
-    stiffness->SetTolerance(tolerance);
-  }
-}
-
-bool Equilibrium::SolveRoughly(const Eigen::VectorXd& moduli) {
-  constexpr double kRough = 1e-4;
-  SetTolerance(std::max(kRough, tolerance_));
-  const bool is_solved = Solve(moduli);
-  SetTolerance(tolerance_);
-  return is_solved;
 }
 
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
@@ -297,7 +281,13 @@ const std::string& Equilibrium::Notice() const {
 Eigen::MatrixXd DisplacementsAt(const Scene& scene,
                                 const Eigen::VectorXd& parameters,
                                 SolverKind solver) {
-  Equilibrium model(scene, solver);
+  return DisplacementsAt(std::vector<const Scene*>{&scene}, parameters, solver);
+}
+
+Eigen::MatrixXd DisplacementsAt(const std::vector<const Scene*>& spaces,
+                                const Eigen::VectorXd& parameters,
+                                SolverKind solver) {
+  Equilibrium model(spaces, solver);
   if (!model.Solve(model.Forces().Parameters().Moduli(parameters))) {
     throw std::runtime_error(
         "the stiffness matrix is singular to working precision");

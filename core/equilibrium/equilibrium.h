@@ -65,9 +65,6 @@ class Equilibrium : public ForwardModel {
   /// there is no u then.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
 
-  /// Solves with an error of 1e-4, in the energy norm, where iterations solve.
-  [[nodiscard]] bool SolveRoughly(const Eigen::VectorXd& moduli);
-
   const Eigen::MatrixXd& Displacement() const override { return displacement_; }
 
   /// The part of u that the held displacements cause, which does not change
@@ -126,9 +123,8 @@ class Equilibrium : public ForwardModel {
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
-  void SetTolerance(double tolerance);
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
-                    SolverKind solver);
+                    SolverKind solver, double tolerance);
   /// Applies `of_stiffness` to the columns of each load case (n side by side)
   /// with the stiffness on the supports of that load case.
   template <class Function>
@@ -159,7 +155,6 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd directions_;
   double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.
   bool has_unknown_motion_;
-  double tolerance_;  ///< Of iterations.
   int element_passes_ = 0;
 };
 
@@ -169,6 +164,10 @@ class Equilibrium : public ForwardModel {
 /// to working precision.
 [[nodiscard]] Eigen::MatrixXd DisplacementsAt(
     const Scene& scene, const Eigen::VectorXd& parameters,
+    SolverKind solver = SolverKind::kAutomatic);
+/// Returns those of the last of some spaces, as Equilibrium takes them.
+[[nodiscard]] Eigen::MatrixXd DisplacementsAt(
+    const std::vector<const Scene*>& spaces, const Eigen::VectorXd& parameters,
     SolverKind solver = SolverKind::kAutomatic);
 
 }  // namespace elastimate

@@ -15,12 +15,13 @@ constexpr double kCoarseTolerance = 1e-2;
 
 RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                    const std::vector<const Supports*>& supports,
-                                   SolverKind solver)
+                                   SolverKind solver, double tolerance)
     : SupportedStiffness(*supports.back()),
       coarsest_(*meshes.front(), *supports.front(), solver),
       make_finest_([mesh = meshes.back(), held = supports.back(), solver] {
         return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
-      }) {
+      }),
+      tolerance_(tolerance) {
   for (const Supports* const of_space : supports) {
     is_free_.emplace_back((!of_space->held).cast<double>().matrix().reshaped());
   }
@@ -73,7 +74,7 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
   const std::size_t finest = is_free_.size() - 1;
   const Eigen::VectorXd& is_free = is_free_[finest];
   ConjugateGradientOptions options;
-  options.tolerance = Tolerance();
+  options.tolerance = tolerance_;
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(

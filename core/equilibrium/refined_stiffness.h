@@ -28,11 +28,13 @@ class RefinedStiffness : public SupportedStiffness {
   static constexpr int kMostIterations = 200;
 
   /// `meshes` and `supports` are those of each space, from coarse to fine,
-  /// which must outlive this object.  Preconditions and exceptions are those of
+  /// which must outlive this object.  A solution may differ by `tolerance` of
+  /// itself in the energy norm.  Preconditions and exceptions are those of
   /// StiffnessSolver.
   RefinedStiffness(const std::vector<const Mesh*>& meshes,
                    const std::vector<const Supports*>& supports,
-                   SolverKind solver);
+                   SolverKind solver,
+                   double tolerance = StiffnessSolver::kAccurate);
 
   bool Factorize(const NestedStiffness& stiffness,
                  bool with_held_rows) override;
@@ -76,6 +78,7 @@ class RefinedStiffness : public SupportedStiffness {
   /// For each space, coarse to fine, 1 or 0 for each degree of freedom.
   std::vector<Eigen::VectorXd> is_free_;
   std::vector<CycleSpace> cycle_;  ///< All spaces but the coarsest.
+  double tolerance_;
   const NestedStiffness* stiffness_ = nullptr;
   /// The smallest eigenvalue of the preconditioned stiffness that any solution
   /// met so far.

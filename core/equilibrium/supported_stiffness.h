@@ -41,10 +41,6 @@ class SupportedStiffness {
     return Solve(all);
   }
 
-  /// Leaves a relative error of `tolerance` in the energy norm from now on,
-  /// where there is no factor; kAccurate without this call.
-  void SetTolerance(double tolerance) { tolerance_ = tolerance; }
-
   /// Returns u in equilibrium without loads where the held degrees of freedom
   /// are displaced by `held` (zero in the free rows): n solves.  This function
   /// and those below need the held rows.
@@ -70,11 +66,9 @@ class SupportedStiffness {
  protected:
   explicit SupportedStiffness(const Supports& supports) : dofs_(supports) {}
   const DegreesOfFreedom& Dofs() const { return dofs_; }
-  double Tolerance() const { return tolerance_; }
 
  private:
   DegreesOfFreedom dofs_;
-  double tolerance_ = StiffnessSolver::kAccurate;
 };
 
 }  // namespace elastimate

@@ -122,6 +122,8 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           Estimate& estimate) {
   std::vector<std::optional<Eigen::VectorXd>> starts = StartsOf(scene, misfit);
   starts.push_back(VirtualFieldsStart(scene, options, estimate));
+  // Descents to one minimum end in costs that differ by the rounding of them.
+  constexpr double kSame = 1e-9;
   std::optional<BoundedMinimum> best;
   for (const std::optional<Eigen::VectorXd>& start : starts) {
     // A descent that begins beyond all data takes hundreds of steps, and ends
@@ -129,7 +131,7 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
     if (start && (!best || ExplainsAnything(*start, misfit))) {
       BoundedMinimum minimum =
           DescendFrom(options, *start, Distance::kFar, misfit);
-      if (!best || minimum.cost < best->cost) {
+      if (!best || minimum.cost < (1 - kSame) * best->cost) {
         best = minimum;
       }
     }

@@ -11,7 +11,9 @@
 namespace elastimate {
 namespace {
 
-// Steps below this part of a standard error end the fit.
+// Steps below this part of a standard error end the search from far, or the
+// fit.
+constexpr double kNearOfErrors = 1;
 constexpr double kSmallestStepOfErrors = 1e-2;
 
 BoundedMinimum Descend(const EstimatorOptions& estimator_options,
@@ -26,8 +28,10 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   options.initial_trust_region_radius =
       distance == Distance::kFar ? 1 : kLargeRadius;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
-  options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
-                               static_cast<double>(misfit.NumRows());
+  const double smallest_step =
+      distance == Distance::kFar ? kNearOfErrors : kSmallestStepOfErrors;
+  options.function_tolerance =
+      smallest_step * smallest_step / static_cast<double>(misfit.NumRows());
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-11;
   options.logging_type = ceres::SILENT;
@@ -90,9 +94,13 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
 BoundedMinimum DescendFrom(const EstimatorOptions& options,
                            const Eigen::VectorXd& start, Distance distance,
                            DisplacementMisfit& misfit) {
-  return misfit.NumResultants() > 0
-             ? DescendWithResultants(options, start, distance, misfit)
-             : Descend(options, start, distance, misfit);
+  if (misfit.NumResultants() > 0) {
+    return DescendWithResultants(options, start, distance, misfit);
+  }
+  const BoundedMinimum minimum = Descend(options, start, distance, misfit);
+  return distance == Distance::kFar && minimum.end == End::kDone
+             ? Descend(options, minimum.variables, Distance::kNear, misfit)
+             : minimum;
 }
 
 }  // namespace elastimate

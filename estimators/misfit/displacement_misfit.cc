@@ -158,8 +158,7 @@ std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
     const Eigen::VectorXd& unit_moduli, Loss loss) {
   x_.resize(0);
   placed_.reset();
-  if (motion_ ? !model_->Solve(unit_moduli)
-              : !small_strain_model_->SolveRoughly(unit_moduli)) {
+  if (!model_->Solve(unit_moduli)) {
     return std::nullopt;
   }
   const Eigen::MatrixXd& held = small_strain_model_->SupportResponse();

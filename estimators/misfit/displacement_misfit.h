@@ -141,8 +141,7 @@ class DisplacementMisfit {
   };
   /// What explains displacements or resultants best where the moduli are 1, in
   /// the sum of squares or, with a loss, that of absolute deviations; empty
-  /// when they oppose the loads.  Of resultants alone the cost is zero.  For
-  /// starts of searches: iterations leave an error of 1e-4 (SolveRoughly).
+  /// when they oppose the loads.  Of resultants alone the cost is zero.
   /// Precondition: small strains.
   std::optional<ScaleFit> FitScale(const Eigen::VectorXd& unit_moduli,
                                    Loss loss);

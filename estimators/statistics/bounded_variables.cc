@@ -36,6 +36,8 @@ class VariablesCost : public ceres::CostFunction {
       return false;
     }
     Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
+    last_ = x;
+    cost_of_last_ = r.squaredNorm() / 2;
     for (Eigen::Index i = 0; jacobians != nullptr && i < num_variables_; ++i) {
       if (jacobians[i] != nullptr) {
         Eigen::Map<Eigen::VectorXd>(jacobians[i], r.size()) = jacobian.col(i);
@@ -44,9 +46,15 @@ class VariablesCost : public ceres::CostFunction {
     return true;
   }
 
+  // Return the variables whose residuals were found last, and their cost.
+  const Eigen::VectorXd& Last() const { return last_; }
+  double CostOfLast() const { return cost_of_last_; }
+
  private:
   const ResidualFunction& residual_;
   Eigen::Index num_variables_;
+  mutable Eigen::VectorXd last_;
+  mutable double cost_of_last_ = std::numeric_limits<double>::infinity();
 };
 
 End EndOf(const ceres::Solver::Summary& summary) {
@@ -76,8 +84,8 @@ class BoundedSearch {
       x_(i) = std::min(std::max(x_(i), lower_(i)), upper_(i));
       blocks.push_back(&x_(i));
     }
-    problem_.AddResidualBlock(
-        new VariablesCost(residual, num_residuals, x_.size()), nullptr, blocks);
+    cost_ = new VariablesCost(residual, num_residuals, x_.size());
+    problem_.AddResidualBlock(cost_, nullptr, blocks);
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
       problem_.SetParameterLowerBound(&x_(i), 0, lower_(i));
       problem_.SetParameterUpperBound(&x_(i), 0, upper_(i));
@@ -103,14 +111,22 @@ class BoundedSearch {
       ceres::Solve(options, &problem_, &summary);
     }
     BoundedMinimum minimum;
-    minimum.variables = x_;
-    for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      minimum.on_bound.push_back(SideOf(i));
-    }
     // Where there is no value at the start, Ceres knows no cost.
     minimum.cost = summary.IsSolutionUsable()
                        ? summary.final_cost
                        : std::numeric_limits<double>::infinity();
+    // Ceres evaluates the step that its tolerance ends the search with, and
+    // does not take it.
+    if (summary.termination_type == ceres::CONVERGENCE &&
+        cost_->CostOfLast() <=
+            (1 + options.function_tolerance) * minimum.cost) {
+      x_ = cost_->Last();
+      minimum.cost = cost_->CostOfLast();
+    }
+    minimum.variables = x_;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      minimum.on_bound.push_back(SideOf(i));
+    }
     minimum.end = EndOf(summary);
     minimum.message = "Ceres: " + summary.message;
     return minimum;
@@ -172,6 +188,7 @@ class BoundedSearch {
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
   Eigen::VectorXd x_;
+  VariablesCost* cost_ = nullptr;  ///< The problem owns it.
   ceres::Problem problem_;
 };
 

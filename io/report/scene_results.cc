@@ -222,6 +222,19 @@ struct SolvedScenes {
   std::optional<Scene> divided;
 
   const Scene& Finest() const { return divided ? *divided : undivided; }
+  /// Returns them after `scene`, which the fit began with, by whose elements
+  /// their systems are solved.
+  std::vector<const Scene*> FromCoarseToFine(const Scene& scene) const {
+    std::vector<const Scene*> spaces;
+    if (scene.mesh.NumNodes() < undivided.mesh.NumNodes()) {
+      spaces.push_back(&scene);
+    }
+    spaces.push_back(&undivided);
+    if (divided) {
+      spaces.push_back(&*divided);
+    }
+    return spaces;
+  }
 };
 
 // Returns the scenes of the fit, of whose elements `modelled` has the order.
@@ -328,7 +341,7 @@ void AddModel(const Scene& scene, const Scene& modelled,
     return;
   }
   const SolvedScenes solved = ScenesOfFit(scene, modelled, estimate);
-  Equilibrium model(solved.Finest(), solver);
+  Equilibrium model(solved.FromCoarseToFine(scene), solver);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
   if (!model.Solve(moduli)) {
     return;
