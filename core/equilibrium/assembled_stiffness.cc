@@ -6,11 +6,16 @@ namespace elastimate {
 
 AssembledStiffness::AssembledStiffness(const Mesh& mesh,
                                        const Supports& supports,
-                                       SolverKind solver)
+                                       SolverKind solver,
+                                       const StiffnessSolver* shared)
     : SupportedStiffness(supports),
       mesh_(mesh),
       supports_(supports),
-      kind_(solver) {}
+      kind_(solver) {
+  if (shared != nullptr) {
+    solver_ = std::make_unique<StiffnessSolver>(shared->Sharing());
+  }
+}
 
 StiffnessSolver& AssembledStiffness::Solver() const {
   if (!solver_) {
@@ -26,11 +31,14 @@ const std::string& AssembledStiffness::Notice() const {
 
 bool AssembledStiffness::Factorize(const NestedStiffness& stiffness,
                                    bool with_held_rows) {
-  if (!Solver().FactorizeBlocks(stiffness.CoarsestBlocks())) {
+  const auto make_blocks = [&stiffness, this] {
+    return stiffness.Blocks(0, Solver().Graph());
+  };
+  if (!Solver().FactorizeBlocks(make_blocks)) {
     return false;
   }
   if (with_held_rows) {
-    AssembleHeldRows(stiffness.CoarsestBlocks());
+    AssembleHeldRows(make_blocks());
   }
   return true;
 }

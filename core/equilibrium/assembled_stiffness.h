@@ -17,9 +17,10 @@ namespace elastimate {
 class AssembledStiffness : public SupportedStiffness {
  public:
   /// Preconditions and exceptions are those of StiffnessSolver.  The mesh and
-  /// the supports must outlive this object.
+  /// the supports must outlive this object.  `shared` is null or a solver of
+  /// both, whose memory is shared (StiffnessSolver::Sharing).
   AssembledStiffness(const Mesh& mesh, const Supports& supports,
-                     SolverKind solver);
+                     SolverKind solver, const StiffnessSolver* shared);
 
   /// Factorises K of the coarsest space of `stiffness`, whose mesh has to be
   /// this one.
@@ -43,6 +44,9 @@ class AssembledStiffness : public SupportedStiffness {
 
   const NodeGraph& GraphOfAssembled() const override {
     return Solver().Graph();
+  }
+  const StiffnessSolver* SolverOfCoarsest() const override {
+    return solver_.get();
   }
   Work WorkDone() const override {
     return solver_ ? solver_->WorkDone() : Work();

@@ -26,7 +26,8 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
     : Equilibrium(std::vector<const Scene*>{&scene}, solver) {}
 
 Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
-                         SolverKind solver, double tolerance)
+                         SolverKind solver, double tolerance,
+                         const StiffnessSolver* shared)
     : values_(std::make_unique<NestedStiffness>(UsedSpaces(spaces))),
       mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
@@ -36,7 +37,7 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
   const HeldGroups groups = GroupByHeld(scene);
   stiffness_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
-    AddStiffness(UsedSpaces(spaces), k, solver, tolerance);
+    AddStiffness(UsedSpaces(spaces), k, solver, tolerance, shared);
   }
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     held_displacement_.col(k) =
@@ -52,19 +53,23 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
 
 void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
                                Eigen::Index k, SolverKind solver,
-                               double tolerance) {
+                               double tolerance,
+                               const StiffnessSolver* shared) {
   std::vector<const Mesh*> meshes;
   std::vector<const Supports*> supports;
   for (const Scene* const space : spaces) {
     meshes.push_back(&space->mesh);
     supports.push_back(&SupportsOf(*space, k));
   }
+  if (shared != nullptr && !shared->Holds(*supports[0])) {
+    shared = nullptr;
+  }
   if (spaces.size() > 1) {
-    stiffness_.push_back(std::make_unique<RefinedStiffness>(meshes, supports,
-                                                            solver, tolerance));
+    stiffness_.push_back(std::make_unique<RefinedStiffness>(
+        meshes, supports, solver, tolerance, shared));
   } else {
-    stiffness_.push_back(
-        std::make_unique<AssembledStiffness>(*meshes[0], *supports[0], solver));
+    stiffness_.push_back(std::make_unique<AssembledStiffness>(
+        *meshes[0], *supports[0], solver, shared));
   }
 }
 
@@ -105,6 +110,10 @@ const NodeGraph& Equilibrium::Graph() const {
   return *graph_;
 }
 
+const StiffnessSolver* Equilibrium::SolverOfCoarsest() const {
+  return stiffness_[0]->SolverOfCoarsest();
+}
+
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
@@ -113,7 +122,7 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
   directions_.resize(0, 0);
-  values_->SetModuli(scaled, stiffness_[0]->GraphOfAssembled());
+  values_->SetModuli(scaled);
   for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
     if (!stiffness->Factorize(*values_, has_unknown_motion_)) {
       return false;

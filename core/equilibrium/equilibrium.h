@@ -51,8 +51,12 @@ class Equilibrium : public ForwardModel {
   /// change displacements by less than the tolerance leaves them as they are
   /// but for a factor.  Where the spaces do not contain each other, the
   /// stiffness of the last one is factorised and the others are not used.
+  /// `shared` is null or a solver of the mesh of the first of them (of the
+  /// last, where that is factorised); its memory is shared with the solver of
+  /// the supports that it holds (StiffnessSolver::Sharing).
   Equilibrium(const std::vector<const Scene*>& spaces, SolverKind solver,
-              double tolerance = StiffnessSolver::kAccurate);
+              double tolerance = StiffnessSolver::kAccurate,
+              const StiffnessSolver* shared = nullptr);
 
   ~Equilibrium() override;
   Equilibrium(Equilibrium&&) noexcept;
@@ -118,13 +122,16 @@ class Equilibrium : public ForwardModel {
     return Forces().Parameters();
   }
   const NodeGraph& Graph() const override;
+  /// Returns the solver of the coarsest space, or null before there is one.
+  const StiffnessSolver* SolverOfCoarsest() const;
   Work WorkDone() const override;
   const std::string& Notice() const override;
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
-                    SolverKind solver, double tolerance);
+                    SolverKind solver, double tolerance,
+                    const StiffnessSolver* shared);
   /// Applies `of_stiffness` to the columns of each load case (n side by side)
   /// with the stiffness on the supports of that load case.
   template <class Function>

@@ -40,13 +40,8 @@ NestedStiffness::NestedStiffness(const std::vector<const Scene*>& spaces)
   }
 }
 
-void NestedStiffness::SetModuli(const Eigen::VectorXd& moduli,
-                                const NodeGraph& graph) {
+void NestedStiffness::SetModuli(const Eigen::VectorXd& moduli) {
   moduli_ = moduli;
-  blocks_ = forces_[0].Blocks(moduli, graph);
-  if (NumSpaces() == 1) {
-    ++num_passes_;
-  }
   for (std::size_t space = 1; space < NumSpaces(); ++space) {
     Finer& finer = finer_[space - 1];
     finer.diagonal_blocks = forces_[space].DiagonalBlocks(moduli);

@@ -20,8 +20,8 @@ namespace elastimate {
 
 /// The stiffness K(theta) of one specimen in some spaces that contain each
 /// other, from coarse to fine, at the same moduli, as far as it does not depend
-/// on supports.  The coarsest one comes as blocks that can be assembled, and
-/// the finer ones multiply columns.
+/// on supports.  It comes as blocks that can be assembled, or multiplies
+/// columns.
 class NestedStiffness {
  public:
   /// Refers to the scenes, which have to stay as they are.
@@ -30,9 +30,8 @@ class NestedStiffness {
   NestedStiffness(const NestedStiffness&) = delete;
   NestedStiffness& operator=(const NestedStiffness&) = delete;
 
-  /// `graph` is of the coarsest mesh.  One element pass, and for each finer
-  /// space about ten.
-  void SetModuli(const Eigen::VectorXd& moduli, const NodeGraph& graph);
+  /// About ten element passes for each space but the coarsest.
+  void SetModuli(const Eigen::VectorXd& moduli);
 
   std::size_t NumSpaces() const { return forces_.size(); }
   /// Returns the internal forces in a space.
@@ -44,12 +43,12 @@ class NestedStiffness {
     return nodes_after_[space];
   }
 
-  /// Returns InternalForces::Blocks of a space, whose graph is given.
+  /// Returns InternalForces::Blocks of a space, whose graph is given.  One
+  /// element pass.
   Eigen::MatrixXd Blocks(std::size_t space, const NodeGraph& graph) const {
+    num_passes_ += space + 1 == NumSpaces() ? 1 : 0;
     return forces_[space].Blocks(moduli_, graph);
   }
-  /// Returns those of the coarsest space.
-  const Eigen::MatrixXd& CoarsestBlocks() const { return blocks_; }
 
   /// Returns K V in a space.  One element pass.
   Eigen::MatrixXd Multiply(std::size_t space,
@@ -78,9 +77,8 @@ class NestedStiffness {
   std::deque<InternalForces> forces_;  ///< A deque does not move them.
   std::vector<FinerNodes> nodes_after_;
   Eigen::VectorXd moduli_;
-  Eigen::MatrixXd blocks_;
   std::vector<Finer> finer_;
-  int num_passes_ = 0;
+  mutable int num_passes_ = 0;
 };
 
 }  // namespace elastimate

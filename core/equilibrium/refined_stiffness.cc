@@ -15,9 +15,12 @@ constexpr double kCoarseTolerance = 1e-2;
 
 RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                    const std::vector<const Supports*>& supports,
-                                   SolverKind solver, double tolerance)
+                                   SolverKind solver, double tolerance,
+                                   const StiffnessSolver* shared)
     : SupportedStiffness(*supports.back()),
-      coarsest_(*meshes.front(), *supports.front(), solver),
+      coarsest_(shared == nullptr ? StiffnessSolver(*meshes.front(),
+                                                    *supports.front(), solver)
+                                  : shared->Sharing()),
       make_finest_([mesh = meshes.back(), held = supports.back(), solver] {
         return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
       }),
@@ -33,7 +36,10 @@ bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
   if (finest_) {
     return FactorizeFinest();
   }
-  return coarsest_.FactorizeBlocks(stiffness.CoarsestBlocks()) && SetUpCycle();
+  const auto make_blocks = [&stiffness, this] {
+    return stiffness.Blocks(0, coarsest_.Graph());
+  };
+  return coarsest_.FactorizeBlocks(make_blocks) && SetUpCycle();
 }
 
 bool RefinedStiffness::SetUpCycle() {

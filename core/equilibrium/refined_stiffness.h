@@ -29,12 +29,14 @@ class RefinedStiffness : public SupportedStiffness {
 
   /// `meshes` and `supports` are those of each space, from coarse to fine,
   /// which must outlive this object.  A solution may differ by `tolerance` of
-  /// itself in the energy norm.  Preconditions and exceptions are those of
-  /// StiffnessSolver.
+  /// itself in the energy norm.  `shared` is null or a solver of the coarsest
+  /// space, whose memory is shared (StiffnessSolver::Sharing).  Preconditions
+  /// and exceptions are those of StiffnessSolver.
   RefinedStiffness(const std::vector<const Mesh*>& meshes,
                    const std::vector<const Supports*>& supports,
                    SolverKind solver,
-                   double tolerance = StiffnessSolver::kAccurate);
+                   double tolerance = StiffnessSolver::kAccurate,
+                   const StiffnessSolver* shared = nullptr);
 
   bool Factorize(const NestedStiffness& stiffness,
                  bool with_held_rows) override;
@@ -53,6 +55,9 @@ class RefinedStiffness : public SupportedStiffness {
 
   const NodeGraph& GraphOfAssembled() const override {
     return coarsest_.Graph();
+  }
+  const StiffnessSolver* SolverOfCoarsest() const override {
+    return &coarsest_;
   }
   /// The solves and element passes are those of the finest space.
   Work WorkDone() const override;

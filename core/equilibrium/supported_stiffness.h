@@ -59,6 +59,8 @@ class SupportedStiffness {
 
   /// Returns the graph of the mesh whose stiffness is assembled.
   virtual const NodeGraph& GraphOfAssembled() const = 0;
+  /// Returns the solver of the coarsest space, or null before there is one.
+  virtual const StiffnessSolver* SolverOfCoarsest() const = 0;
   virtual Work WorkDone() const = 0;
   /// Returns StiffnessSolver::Notice.
   virtual const std::string& Notice() const = 0;

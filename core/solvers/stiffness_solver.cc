@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -23,116 +24,174 @@ constexpr double kMostFlops[] = {1e6, 9e6};
 
 StiffnessSolver::StiffnessSolver(const Mesh& mesh, const Supports& supports,
                                  SolverKind kind)
-    : degrees_of_freedom_(supports), poisson_ratio_(kNaN) {
+    : poisson_ratio_(kNaN) {
   const std::string why_not_held = WhyNotHeld(mesh, supports);
   if (!why_not_held.empty()) {
     throw std::invalid_argument(why_not_held);
   }
   assert(kind != SolverKind::kMultigrid || HasMultigrid());
-  assembly_ = std::make_unique<StiffnessAssembly>(mesh, degrees_of_freedom_);
+  shared_ = std::make_shared<Shared>(supports);
+  Shared& shared = *shared_;
+  shared.assembly =
+      std::make_unique<StiffnessAssembly>(mesh, shared.degrees_of_freedom);
   ++work_.element_passes;
-  is_multigrid_ = kind == SolverKind::kMultigrid;
-  if (!is_multigrid_) {
-    auto cholesky = std::make_unique<Cholesky>(*assembly_, degrees_of_freedom_);
+  shared.is_multigrid = kind == SolverKind::kMultigrid;
+  if (!shared.is_multigrid) {
+    auto cholesky =
+        std::make_unique<Cholesky>(*shared.assembly, shared.degrees_of_freedom);
     const double most_flops =
         kMostFlops[mesh.Order() - 1] *
-        static_cast<double>(degrees_of_freedom_.NumFree());
+        static_cast<double>(shared.degrees_of_freedom.NumFree());
     if (kind == SolverKind::kAutomatic &&
         cholesky->FactorizationFlops() > most_flops) {
-      is_multigrid_ = HasMultigrid();
-      notice_ = HasMultigrid()
-                    ? ""
-                    : "the mesh is so large that multigrid would be faster "
-                      "than the factorisation, but it is not available (" +
-                          WhyNoMultigrid() + ")";
+      shared.is_multigrid = HasMultigrid();
+      shared.notice =
+          HasMultigrid()
+              ? ""
+              : "the mesh is so large that multigrid would be faster "
+                "than the factorisation, but it is not available (" +
+                    WhyNoMultigrid() + ")";
     }
-    if (!is_multigrid_) {
-      solver_ = std::move(cholesky);
+    if (!shared.is_multigrid) {
+      shared.solver = std::move(cholesky);
     }
   }
-  if (is_multigrid_) {
+  if (shared.is_multigrid) {
     // Its set-up takes much longer than an element pass, and much memory.
-    assembly_->ForgetBases();
-    solver_ = MakeMultigrid(mesh, *assembly_, degrees_of_freedom_);
+    shared.assembly->ForgetBases();
+    shared.solver =
+        MakeMultigrid(mesh, *shared.assembly, shared.degrees_of_freedom);
     work_.ranks = NumRanksOfSolves();
   }
 }
 
+StiffnessSolver::StiffnessSolver(std::shared_ptr<Shared> shared)
+    : shared_(std::move(shared)), poisson_ratio_(kNaN) {
+  if (shared_->is_multigrid) {
+    work_.ranks = NumRanksOfSolves();
+  }
+}
+
+StiffnessSolver StiffnessSolver::Sharing() const {
+  return StiffnessSolver(shared_);
+}
+
+bool StiffnessSolver::Holds(const Supports& supports) const {
+  return DegreesOfFreedom(supports).place == Dofs().place;
+}
+
 bool StiffnessSolver::Factorize(double poisson_ratio) {
-  if (poisson_ratio == poisson_ratio_) {
+  if (poisson_ratio == poisson_ratio_ &&
+      own_factorization_ == shared_->num_factorizations) {
     return true;
   }
-  poisson_ratio_ = kNaN;
-  if (!(poisson_ratio > -1 && poisson_ratio < 0.5)) {
-    return false;
-  }
-  assembly_->Combine(poisson_ratio, values_);
-  work_.element_passes += assembly_->HasBases() ? 0 : 1;
-  if (!FactorizeValues()) {
-    return false;
-  }
+  make_blocks_ = {};
   poisson_ratio_ = poisson_ratio;
+  if (!(poisson_ratio > -1 && poisson_ratio < 0.5) || !MakeValues() ||
+      !FactorizeValues()) {
+    poisson_ratio_ = kNaN;
+    return false;
+  }
   return true;
 }
 
 bool StiffnessSolver::FactorizeBlocks(const Eigen::MatrixXd& blocks) {
   poisson_ratio_ = kNaN;
-  values_ = assembly_->ValuesOf(blocks);
+  make_blocks_ = {};
+  shared_->values = shared_->assembly->ValuesOf(blocks);
   return FactorizeValues();
 }
 
+bool StiffnessSolver::FactorizeBlocks(MakeBlocks make_blocks) {
+  poisson_ratio_ = kNaN;
+  make_blocks_ = std::move(make_blocks);
+  return MakeValues() && FactorizeValues();
+}
+
+// Makes the values of the matrix that was asked for last; tells whether it
+// could.
+bool StiffnessSolver::MakeValues() {
+  if (make_blocks_) {
+    shared_->values = shared_->assembly->ValuesOf(make_blocks_());
+    return true;
+  }
+  if (poisson_ratio_ == poisson_ratio_) {
+    shared_->assembly->Combine(poisson_ratio_, shared_->values);
+    work_.element_passes += shared_->assembly->HasBases() ? 0 : 1;
+    return true;
+  }
+  return false;
+}
+
 bool StiffnessSolver::FactorizeValues() {
-  if (is_multigrid_) {
-    const int set_ups_before = solver_->NumSetUps();
-    const bool is_set_up = solver_->Factorize(values_);
-    work_.multigrid_set_ups += solver_->NumSetUps() - set_ups_before;
+  Shared& shared = *shared_;
+  own_factorization_ = ++shared.num_factorizations;
+  if (shared.is_multigrid) {
+    const int set_ups_before = shared.solver->NumSetUps();
+    const bool is_set_up = shared.solver->Factorize(shared.values);
+    work_.multigrid_set_ups += shared.solver->NumSetUps() - set_ups_before;
     if (is_set_up) {
       return true;
     }
     FallBackToCholesky("could not be set up");
   }
   ++work_.factorizations;
-  return solver_->Factorize(values_);
+  return shared.solver->Factorize(shared.values);
+}
+
+// Factorises what was factorised last, where another solver has changed that.
+bool StiffnessSolver::FactorizeAgain() {
+  return own_factorization_ == shared_->num_factorizations ||
+         (MakeValues() && FactorizeValues());
 }
 
 void StiffnessSolver::FallBackToCholesky(const std::string& why) {
-  notice_ = "multigrid " + why + ", so the stiffness matrix was factorised";
-  is_multigrid_ = false;
-  solver_.reset();  // Its memory is needed.
-  solver_ = std::make_unique<Cholesky>(*assembly_, degrees_of_freedom_);
+  Shared& shared = *shared_;
+  shared.notice =
+      "multigrid " + why + ", so the stiffness matrix was factorised";
+  shared.is_multigrid = false;
+  shared.solver.reset();  // Its memory is needed.
+  shared.solver =
+      std::make_unique<Cholesky>(*shared.assembly, shared.degrees_of_freedom);
 }
 
 Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
                                        double tolerance,
                                        const Eigen::MatrixXd& start) {
+  Shared& shared = *shared_;
   work_.solves += static_cast<int>(all.cols());
-  const Eigen::MatrixXd right_hand_sides = degrees_of_freedom_.Restrict(all);
-  const Eigen::MatrixXd free_start = is_multigrid_ && start.size() > 0
-                                         ? degrees_of_freedom_.Restrict(start)
-                                         : Eigen::MatrixXd();
-  const int iterations_before = solver_->NumIterations();
-  const int set_ups_before = solver_->NumSetUps();
-  std::optional<Eigen::MatrixXd> solution =
-      solver_->Solve(right_hand_sides, tolerance, free_start);
-  work_.iterations += solver_->NumIterations() - iterations_before;
-  work_.multigrid_set_ups += solver_->NumSetUps() - set_ups_before;
-  if (!solution && is_multigrid_) {
-    std::ostringstream why;
-    why.precision(10);
-    why << "did not converge";
-    if (poisson_ratio_ == poisson_ratio_) {
-      why << " at nu = " << poisson_ratio_;
-    }
-    FallBackToCholesky(why.str());
-    if (FactorizeValues()) {
-      solution = solver_->Solve(right_hand_sides, tolerance, free_start);
+  std::optional<Eigen::MatrixXd> solution;
+  if (FactorizeAgain()) {
+    const Eigen::MatrixXd right_hand_sides =
+        shared.degrees_of_freedom.Restrict(all);
+    const Eigen::MatrixXd free_start =
+        shared.is_multigrid && start.size() > 0
+            ? shared.degrees_of_freedom.Restrict(start)
+            : Eigen::MatrixXd();
+    const int iterations_before = shared.solver->NumIterations();
+    const int set_ups_before = shared.solver->NumSetUps();
+    solution = shared.solver->Solve(right_hand_sides, tolerance, free_start);
+    work_.iterations += shared.solver->NumIterations() - iterations_before;
+    work_.multigrid_set_ups += shared.solver->NumSetUps() - set_ups_before;
+    if (!solution && shared.is_multigrid) {
+      std::ostringstream why;
+      why.precision(10);
+      why << "did not converge";
+      if (poisson_ratio_ == poisson_ratio_) {
+        why << " at nu = " << poisson_ratio_;
+      }
+      FallBackToCholesky(why.str());
+      if (FactorizeValues()) {
+        solution =
+            shared.solver->Solve(right_hand_sides, tolerance, free_start);
+      }
     }
   }
   if (!solution) {
     poisson_ratio_ = kNaN;
     return Eigen::MatrixXd::Constant(all.rows(), all.cols(), kNaN);
   }
-  return degrees_of_freedom_.Extend(*solution);
+  return shared.degrees_of_freedom.Extend(*solution);
 }
 
 }  // namespace elastimate

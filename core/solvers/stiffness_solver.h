@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -66,6 +68,14 @@ class StiffnessSolver {
   /// into memory.  `mesh` has to outlive this object.
   StiffnessSolver(const Mesh& mesh, const Supports& supports, SolverKind kind);
 
+  /// Returns a solver of the same mesh and supports that has its analysis, its
+  /// coarse spaces and its factor in the same memory.  Each of the two
+  /// factorises again, by what it last factorised, where it solves after the
+  /// other one has factorised.  Its work is its own.
+  StiffnessSolver Sharing() const;
+  /// Tells whether these supports hold what those of this solver hold.
+  bool Holds(const Supports& supports) const;
+
   /// Factorises A(nu); does nothing when nu is the present one.  Returns false
   /// when A(nu) is singular to working precision (nu at or beyond -1 or 1/2, or
   /// an extremely ill-conditioned mesh).
@@ -74,7 +84,12 @@ class StiffnessSolver {
   /// Factorises a stiffness that is given by a block for each pair of the graph
   /// instead, side by side: dimension x (dimension num_pairs).  Returns false
   /// when it is singular to working precision.
+  /// Precondition: no other solver shares the memory of this one.
   [[nodiscard]] bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
+  /// Factorises the blocks that the function makes, now and when they are
+  /// needed again, which is so until the next factorisation.
+  using MakeBlocks = std::function<Eigen::MatrixXd()>;
+  [[nodiscard]] bool FactorizeBlocks(MakeBlocks make_blocks);
 
   /// Returns A^-1 times the free rows of each column of `all` (num_dofs x n),
   /// and zeros in the held rows.  `start` is empty or has a guess of each
@@ -89,27 +104,40 @@ class StiffnessSolver {
   /// Returns nu of the present factorisation; NaN when there is none, or when
   /// it is of blocks.
   double PoissonRatio() const { return poisson_ratio_; }
-  const DegreesOfFreedom& Dofs() const { return degrees_of_freedom_; }
-  const NodeGraph& Graph() const { return assembly_->Graph(); }
+  const DegreesOfFreedom& Dofs() const { return shared_->degrees_of_freedom; }
+  const NodeGraph& Graph() const { return shared_->assembly->Graph(); }
   const Work& WorkDone() const { return work_; }
-  bool UsesMultigrid() const { return is_multigrid_; }
+  bool UsesMultigrid() const { return shared_->is_multigrid; }
   /// Returns a sentence where systems are solved in another way than was asked
   /// for or than is best; else empty.
-  const std::string& Notice() const { return notice_; }
+  const std::string& Notice() const { return shared_->notice; }
 
  private:
+  struct Shared {
+    explicit Shared(const Supports& supports) : degrees_of_freedom(supports) {}
+    DegreesOfFreedom degrees_of_freedom;
+    std::unique_ptr<StiffnessAssembly> assembly;
+    Eigen::VectorXd values;  ///< The last matrix; its memory is used again.
+    std::unique_ptr<LinearSolver> solver;
+    bool is_multigrid = false;
+    std::string notice;
+    std::int64_t num_factorizations = 0;
+  };
+
+  explicit StiffnessSolver(std::shared_ptr<Shared> shared);
+  bool MakeValues();
   bool FactorizeValues();
+  bool FactorizeAgain();
   void FallBackToCholesky(const std::string& why);
 
-  DegreesOfFreedom degrees_of_freedom_;
-  std::unique_ptr<StiffnessAssembly> assembly_;
-  Eigen::VectorXd values_;  ///< The last matrix; its memory is used again.
-  std::unique_ptr<LinearSolver> solver_;
-  bool is_multigrid_ = false;
+  std::shared_ptr<Shared> shared_;
   /// This is NaN before the first factorisation and after a failed one.
   double poisson_ratio_;
+  /// Makes the blocks of the present factorisation; empty where it is of nu.
+  MakeBlocks make_blocks_;
+  /// Which factorisation is the present one.
+  std::int64_t own_factorization_ = 0;
   Work work_;
-  std::string notice_;
 };
 
 }  // namespace elastimate

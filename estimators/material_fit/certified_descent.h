@@ -42,7 +42,8 @@ class CertifiedDescent {
   /// Has the next minimum take other rows: CertifiedFit::ForgetRows.
   void ForgetRows() { fit_.ForgetRows(); }
 
-  const NodeGraph& Graph() const { return fit_.Model().Graph(); }
+  const StiffnessSolver& Solver() const { return fit_.Model().Solver(); }
+  const NodeGraph& Graph() const { return Solver().Graph(); }
   Work WorkDone() const { return fit_.Model().WorkDone(); }
   const std::string& SolverNotice() const { return fit_.Model().Notice(); }
 

@@ -119,7 +119,9 @@ class Refinement {
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {},
       const SpaceFit* last = nullptr) {
-    auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
+    auto space = std::make_unique<SpaceFit>(
+        scene, options_, coarser,
+        linear_ && !coarser.empty() ? linear_->SolverOfCoarsest() : nullptr);
     space->Misfit().SetNeighbours(neighbours_);
     if (last != nullptr && last->Fit().displacement.size() > 0) {
       space->Misfit().Model().BeginWith(

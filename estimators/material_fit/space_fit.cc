@@ -75,11 +75,12 @@ std::vector<const Scene*> WithFinest(std::vector<const Scene*> coarser,
 }  // namespace
 
 SpaceFit::SpaceFit(Scene scene, const EstimatorOptions& options,
-                   const std::vector<const Scene*>& coarser)
+                   const std::vector<const Scene*>& coarser,
+                   const StiffnessSolver* shared)
     : options_(options),
       scene_(std::move(scene)),
       is_finest_of_several_(!coarser.empty()),
-      misfit_(WithFinest(coarser, scene_), options) {}
+      misfit_(WithFinest(coarser, scene_), options, shared) {}
 
 void SpaceFit::Measure(const Scene& scene, Rows rows) {
   for (std::size_t k = 0; k < scene_.load_cases.size(); ++k) {
@@ -96,6 +97,15 @@ void SpaceFit::Measure(const Scene& scene, Rows rows) {
   if (certified_) {
     certified_->ForgetRows();
   }
+}
+
+const StiffnessSolver* SpaceFit::SolverOfCoarsest() {
+  if (certified_) {
+    return &certified_->Solver();
+  }
+  return misfit_.HasLargeStrains()
+             ? nullptr
+             : misfit_.SmallStrainModel().SolverOfCoarsest();
 }
 
 const std::string& SpaceFit::SolverNotice() {

@@ -48,9 +48,11 @@ class SpaceFit {
   /// Preconditions are those of Estimator::Run; the supports hold the specimen.
   /// `coarser` are spaces of the same specimen, from coarse to fine, by which
   /// systems are solved without a factor of this one; none where that is
-  /// faster.  They and `options` must outlive this object.
+  /// faster.  They and `options` must outlive this object.  `shared` is null or
+  /// a solver of the coarsest space, whose memory is shared.
   SpaceFit(Scene scene, const EstimatorOptions& options,
-           const std::vector<const Scene*>& coarser = {});
+           const std::vector<const Scene*>& coarser = {},
+           const StiffnessSolver* shared = nullptr);
   SpaceFit(const SpaceFit&) = delete;
   SpaceFit& operator=(const SpaceFit&) = delete;
 
@@ -81,6 +83,9 @@ class SpaceFit {
   double SquareSum() const { return square_sum_; }
   Eigen::Index NumRows() const { return misfit_.Observed().Size(); }
   const Scene& OwnScene() const { return scene_; }
+  /// The solver of the coarsest space; null where there is none yet, or where
+  /// strains are large.
+  const StiffnessSolver* SolverOfCoarsest();
   DisplacementMisfit& Misfit() { return misfit_; }
   MaterialFit& Fit() { return fit_; }
   const MaterialFit& Fit() const { return fit_; }

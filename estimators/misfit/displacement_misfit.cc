@@ -32,20 +32,23 @@ double ToleranceFor(const Scene& scene) {
 }
 
 std::unique_ptr<ForwardModel> MakeModel(const std::vector<const Scene*>& spaces,
-                                        SolverKind solver) {
+                                        SolverKind solver,
+                                        const StiffnessSolver* shared) {
   const Scene& scene = *spaces.back();
   if (HasLargeStrainLaw(scene.materials)) {
     return std::make_unique<LargeStrainModel>(scene);
   }
-  return std::make_unique<Equilibrium>(spaces, solver, ToleranceFor(scene));
+  return std::make_unique<Equilibrium>(spaces, solver, ToleranceFor(scene),
+                                       shared);
 }
 
 }  // namespace
 
 DisplacementMisfit::DisplacementMisfit(const std::vector<const Scene*>& spaces,
-                                       const EstimatorOptions& options)
+                                       const EstimatorOptions& options,
+                                       const StiffnessSolver* shared)
     : free_(*spaces.back(), options),
-      model_(MakeModel(spaces, options.solver)),
+      model_(MakeModel(spaces, options.solver, shared)),
       small_strain_model_(dynamic_cast<Equilibrium*>(model_.get())),
       observed_(*spaces.back()),
       on_factorization_(options.on_factorization) {

@@ -35,9 +35,11 @@ class DisplacementMisfit {
 
   /// Takes the last of some spaces of one specimen, from coarse to fine, by
   /// which systems of small strains are solved without its factor
-  /// (Equilibrium).  All must outlive this.
+  /// (Equilibrium), with the memory of `shared` where that is not null.  All
+  /// must outlive this.
   DisplacementMisfit(const std::vector<const Scene*>& spaces,
-                     const EstimatorOptions& options);
+                     const EstimatorOptions& options,
+                     const StiffnessSolver* shared = nullptr);
 
   const FreeParameters& Free() const { return free_; }
   const ObservedDisplacements& Observed() const { return observed_; }

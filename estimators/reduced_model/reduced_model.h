@@ -106,6 +106,7 @@ class ReducedModel {
   bool HasSupportResponse() const { return NumResponses() > num_load_cases_; }
   /// Steps with every change of a basis.
   int Version() const { return version_; }
+  const StiffnessSolver& Solver() const { return solver_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
   /// What the StiffnessSolver says (StiffnessSolver::Notice).

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/core/random_values.h"
@@ -54,6 +55,57 @@ TEST(StiffnessSolver, CountsItsWorkAndDoesNoneTwice) {
   EXPECT_EQ(solver.WorkDone().element_passes, 1);
   EXPECT_EQ(solver.WorkDone().factorizations, 1);
   EXPECT_EQ(solver.WorkDone().solves, 4);
+}
+
+TEST(StiffnessSolver, SharesMemoryInTurns) {
+  const Scene scene = SmallScene("organ");
+  const Eigen::MatrixXd forces = RandomMatrix(3 * scene.mesh.NumNodes(), 2, 1);
+  for (const SolverKind kind :
+       {SolverKind::kCholesky, SolverKind::kMultigrid}) {
+    if (kind == SolverKind::kMultigrid && !HasMultigrid()) {
+      continue;
+    }
+    StiffnessSolver first(scene.mesh, scene.supports, kind);
+    StiffnessSolver second = first.Sharing();
+    const InternalForces of_mesh(scene.mesh, {});
+    const auto make_blocks = [&] {
+      return of_mesh.Blocks(Eigen::Vector2d(1, 5), second.Graph());
+    };
+    StiffnessSolver alone(scene.mesh, scene.supports, kind);
+    ASSERT_TRUE(alone.Factorize(0.1));
+    const Eigen::MatrixXd of_first = alone.Solve(forces);
+    ASSERT_TRUE(alone.FactorizeBlocks(make_blocks()));
+    const Eigen::MatrixXd of_second = alone.Solve(forces);
+    ASSERT_FALSE(of_first.isApprox(of_second, 0.1));
+
+    ASSERT_TRUE(first.Factorize(0.1));
+    ASSERT_TRUE(second.FactorizeBlocks(make_blocks));
+    for (int turn = 0; turn < 2; ++turn) {
+      EXPECT_TRUE(first.Solve(forces).isApprox(of_first, 1e-6));
+      EXPECT_EQ(first.PoissonRatio(), 0.1);
+      EXPECT_TRUE(second.Solve(forces).isApprox(of_second, 1e-6));
+    }
+    ASSERT_TRUE(second.Factorize(0.1));
+    EXPECT_TRUE(second.Solve(forces).isApprox(of_first, 1e-6));
+    EXPECT_EQ(first.WorkDone().solves, 4);
+    EXPECT_EQ(second.WorkDone().solves, 6);
+    if (kind == SolverKind::kCholesky) {
+      EXPECT_EQ(first.WorkDone().factorizations, 3);
+      EXPECT_EQ(second.WorkDone().factorizations, 4);
+    } else {
+      EXPECT_EQ(second.WorkDone().multigrid_set_ups, 0);
+    }
+  }
+}
+
+TEST(StiffnessSolver, TellsWhatItHolds) {
+  const Scene scene = SmallScene("organ");
+  const StiffnessSolver solver(scene.mesh, scene.supports,
+                               SolverKind::kCholesky);
+  EXPECT_TRUE(solver.Holds(scene.supports));
+  Supports others = scene.supports;
+  others.held(0, 0) = !others.held(0, 0);
+  EXPECT_FALSE(solver.Holds(others));
 }
 
 TEST(StiffnessSolver, SaysWhereTheStiffnessIsSingular) {
