@@ -45,11 +45,10 @@ bool AssembledStiffness::Factorize(const NestedStiffness& stiffness,
 
 void AssembledStiffness::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
   const NodeGraph& graph = Solver().Graph();
-  const DegreesOfFreedom& dofs = Dofs();
   const Eigen::Index d = blocks.rows();
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index row, Eigen::Index column, double value) {
-    if (dofs.place[row] < 0) {
+    if (IsFree()(row) == 0) {
       entries.emplace_back(row, column, value);
     }
   };
@@ -68,7 +67,7 @@ void AssembledStiffness::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
       }
     }
   }
-  held_rows_.resize(dofs.NumAll(), dofs.NumAll());
+  held_rows_.resize(IsFree().size(), IsFree().size());
   held_rows_.setFromTriplets(entries.begin(), entries.end());
 }
 

@@ -128,6 +128,7 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
       return false;
     }
   }
+  values_->ForgetDiagonalBlocks();
   const Eigen::MatrixXd start = displacement_ - support_response_;
   SolveForSupports(scaled);
   displacement_ = SolveFrom(start, load_) + support_response_;

@@ -55,9 +55,15 @@ class NestedStiffness {
                            const Eigen::MatrixXd& columns) const {
     return forces_[space].Multiply(moduli_, columns);
   }
-  /// Returns InternalForces::DiagonalBlocks of a finer space.
+  /// Returns InternalForces::DiagonalBlocks of a finer space, until they are
+  /// forgotten.
   const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
     return finer_[space - 1].diagonal_blocks;
+  }
+  void ForgetDiagonalBlocks() {
+    for (Finer& finer : finer_) {
+      finer.diagonal_blocks.resize(0, 0);
+    }
   }
   /// Returns LargestEigenvalue of a finer space without supports.  Supports do
   /// not make the eigenvalues larger.

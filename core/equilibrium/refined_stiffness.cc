@@ -25,8 +25,9 @@ RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
         return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
       }),
       tolerance_(tolerance) {
-  for (const Supports* const of_space : supports) {
-    is_free_.emplace_back((!of_space->held).cast<double>().matrix().reshaped());
+  for (std::size_t i = 0; i + 1 < supports.size(); ++i) {
+    is_free_of_coarser_.emplace_back(
+        (!supports[i]->held).cast<double>().matrix().reshaped());
   }
 }
 
@@ -44,23 +45,23 @@ bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
 
 bool RefinedStiffness::SetUpCycle() {
   cycle_.clear();
-  for (std::size_t i = 1; i < is_free_.size(); ++i) {
+  for (std::size_t i = 1; i <= Finest(); ++i) {
     CycleSpace& space = cycle_.emplace_back();
     space.largest_eigenvalue = stiffness_->LargestEigenvalue(i);
     if (!(space.largest_eigenvalue > 0)) {
       return false;
     }
     space.inverse_blocks =
-        InverseBlocks(stiffness_->DiagonalBlocks(i), is_free_[i]);
+        InverseBlocks(stiffness_->DiagonalBlocks(i), IsFreeIn(i));
     space.multiply = [this, i](const Eigen::MatrixXd& x) {
       return Multiply(i, x);
     };
     const FinerNodes& nodes = stiffness_->NodesAfter(i - 1);
     space.restrict = [this, i, &nodes](const Eigen::MatrixXd& x) {
-      return Eigen::MatrixXd(is_free_[i - 1].asDiagonal() * nodes.Restrict(x));
+      return Eigen::MatrixXd(IsFreeIn(i - 1).asDiagonal() * nodes.Restrict(x));
     };
     space.interpolate = [this, i, &nodes](const Eigen::MatrixXd& x) {
-      return Eigen::MatrixXd(is_free_[i].asDiagonal() * nodes.Interpolate(x));
+      return Eigen::MatrixXd(IsFreeIn(i).asDiagonal() * nodes.Interpolate(x));
     };
   }
   return true;
@@ -68,7 +69,7 @@ bool RefinedStiffness::SetUpCycle() {
 
 bool RefinedStiffness::FactorizeFinest() {
   return finest_->FactorizeBlocks(
-      stiffness_->Blocks(is_free_.size() - 1, finest_->Graph()));
+      stiffness_->Blocks(Finest(), finest_->Graph()));
 }
 
 Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
@@ -77,14 +78,13 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
   if (finest_) {
     return finest_->Solve(all, StiffnessSolver::kAccurate, start);
   }
-  const std::size_t finest = is_free_.size() - 1;
-  const Eigen::VectorXd& is_free = is_free_[finest];
+  const Eigen::VectorXd& is_free = IsFree();
   ConjugateGradientOptions options;
   options.tolerance = tolerance_;
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(
-      [&](const Eigen::MatrixXd& x) { return Multiply(finest, x); },
+      [&](const Eigen::MatrixXd& x) { return Multiply(Finest(), x); },
       [&](const Eigen::MatrixXd& x) { return Cycle(x); },
       is_free.asDiagonal() * all,
       start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
@@ -105,15 +105,15 @@ Eigen::MatrixXd RefinedStiffness::Precondition(const Eigen::MatrixXd& all) {
   if (finest_) {
     return finest_->Solve(all);
   }
-  return Cycle(is_free_.back().asDiagonal() * all);
+  return Cycle(IsFree().asDiagonal() * all);
 }
 
 Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
                                            const Eigen::MatrixXd& x) {
-  if (space + 1 == is_free_.size()) {
+  if (space == Finest()) {
     ++work_.element_passes;
   }
-  return is_free_[space].asDiagonal() * stiffness_->Multiply(space, x);
+  return IsFreeIn(space).asDiagonal() * stiffness_->Multiply(space, x);
 }
 
 Eigen::MatrixXd RefinedStiffness::Cycle(const Eigen::MatrixXd& force) {
@@ -127,12 +127,12 @@ Eigen::MatrixXd RefinedStiffness::Cycle(const Eigen::MatrixXd& force) {
 
 Eigen::MatrixXd RefinedStiffness::HeldForces(
     const Eigen::MatrixXd& displacements) const {
-  return OfHeld(stiffness_->Multiply(is_free_.size() - 1, displacements));
+  return OfHeld(stiffness_->Multiply(Finest(), displacements));
 }
 
 Eigen::MatrixXd RefinedStiffness::HeldForcesTransposed(
     const Eigen::MatrixXd& held) const {
-  return stiffness_->Multiply(is_free_.size() - 1, OfHeld(held));
+  return stiffness_->Multiply(Finest(), OfHeld(held));
 }
 
 Work RefinedStiffness::WorkDone() const {

@@ -66,6 +66,10 @@ class RefinedStiffness : public SupportedStiffness {
   }
 
  private:
+  std::size_t Finest() const { return is_free_of_coarser_.size(); }
+  const Eigen::VectorXd& IsFreeIn(std::size_t space) const {
+    return space == Finest() ? IsFree() : is_free_of_coarser_[space];
+  }
   bool FactorizeFinest();
   /// Sets up the V-cycle over the finer spaces.  Returns whether K is positive
   /// definite there, as far as it is seen.
@@ -80,8 +84,8 @@ class RefinedStiffness : public SupportedStiffness {
   /// converge.
   std::function<std::unique_ptr<StiffnessSolver>()> make_finest_;
   std::unique_ptr<StiffnessSolver> finest_;
-  /// For each space, coarse to fine, 1 or 0 for each degree of freedom.
-  std::vector<Eigen::VectorXd> is_free_;
+  /// IsFree of all spaces but the finest.
+  std::vector<Eigen::VectorXd> is_free_of_coarser_;
   std::vector<CycleSpace> cycle_;  ///< All spaces but the coarsest.
   double tolerance_;
   const NestedStiffness* stiffness_ = nullptr;

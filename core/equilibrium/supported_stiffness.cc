@@ -2,6 +2,9 @@
 
 namespace elastimate {
 
+SupportedStiffness::SupportedStiffness(const Supports& supports)
+    : is_free_((!supports.held).cast<double>().matrix().reshaped()) {}
+
 Eigen::MatrixXd SupportedStiffness::Extend(const Eigen::MatrixXd& held) {
   return held - Solve(HeldForcesTransposed(held));
 }
@@ -12,8 +15,8 @@ Eigen::MatrixXd SupportedStiffness::ExtendTransposed(
 }
 
 Eigen::MatrixXd SupportedStiffness::OfHeld(Eigen::MatrixXd values) const {
-  for (const Eigen::Index dof : dofs_.free) {
-    values.row(dof).setZero();
+  for (Eigen::Index k = 0; k < values.cols(); ++k) {
+    values.col(k) = (is_free_.array() != 0).select(0.0, values.col(k));
   }
   return values;
 }

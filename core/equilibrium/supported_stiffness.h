@@ -6,7 +6,7 @@
 
 #include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/mesh/node_graph.h"
-#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/scene.h"
 #include "elastimate/core/scene/supports.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 
@@ -66,11 +66,12 @@ class SupportedStiffness {
   virtual const std::string& Notice() const = 0;
 
  protected:
-  explicit SupportedStiffness(const Supports& supports) : dofs_(supports) {}
-  const DegreesOfFreedom& Dofs() const { return dofs_; }
+  explicit SupportedStiffness(const Supports& supports);
+  /// 1 or 0 for each degree of freedom.
+  const Eigen::VectorXd& IsFree() const { return is_free_; }
 
  private:
-  DegreesOfFreedom dofs_;
+  Eigen::VectorXd is_free_;
 };
 
 }  // namespace elastimate

@@ -47,14 +47,11 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   return variables;
 }
 
-// Holds all nodes in doubt.
-Scene WithEndsHeld(Scene scene) {
-  Supports& supports = scene.supports;
+void HoldNodesInDoubt(Supports& supports) {
   for (const auto& [component, node, displacement] : supports.in_doubt) {
     supports.held(component, node) = true;
     supports.displacement(component, node) = displacement;
   }
-  return scene;
 }
 
 // Whether a divided mesh could hardly lower the errors, of which noise has
@@ -321,11 +318,11 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
     last = AwayFromEnds(linear_->Misfit().Free(),
                         linear_->Fit().minimum->variables);
   }
-  const Scene quadratic =
-      scene_.mesh.Order() == 1 ? FinerScene(scene_) : scene_;
+  Scene quadratic = scene_.mesh.Order() == 1 ? FinerScene(scene_) : scene_;
   Chain chain = FitQuadratic(quadratic, last);
   if (!quadratic.supports.in_doubt.empty() && chain.Finest().Fit().minimum) {
-    Chain held = FitQuadratic(WithEndsHeld(quadratic), last);
+    HoldNodesInDoubt(quadratic.supports);
+    Chain held = FitQuadratic(quadratic, last);
     if (held.Finest().Fit().minimum) {
       chain = MeanOf(std::move(held), std::move(chain));
     }

@@ -16,9 +16,9 @@ namespace {
 constexpr double kNearOfErrors = 1;
 constexpr double kSmallestStepOfErrors = 1e-2;
 
-BoundedMinimum Descend(const EstimatorOptions& estimator_options,
-                       const Eigen::VectorXd& start, Distance distance,
-                       DisplacementMisfit& misfit) {
+BoundedMinimum Search(const EstimatorOptions& estimator_options,
+                      const Eigen::VectorXd& start, Distance distance,
+                      DisplacementMisfit& misfit) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = estimator_options.max_iterations;
@@ -51,6 +51,17 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
         return is_solved;
       },
       misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
+}
+
+// From far, the radius delays the end of a search, and another one follows
+// without it.
+BoundedMinimum Descend(const EstimatorOptions& options,
+                       const Eigen::VectorXd& start, Distance distance,
+                       DisplacementMisfit& misfit) {
+  const BoundedMinimum minimum = Search(options, start, distance, misfit);
+  return distance == Distance::kFar && minimum.end == End::kDone
+             ? Search(options, minimum.variables, Distance::kNear, misfit)
+             : minimum;
 }
 
 // The standard deviation of a displacement row at x, as given or from what is
@@ -94,13 +105,9 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
 BoundedMinimum DescendFrom(const EstimatorOptions& options,
                            const Eigen::VectorXd& start, Distance distance,
                            DisplacementMisfit& misfit) {
-  if (misfit.NumResultants() > 0) {
-    return DescendWithResultants(options, start, distance, misfit);
-  }
-  const BoundedMinimum minimum = Descend(options, start, distance, misfit);
-  return distance == Distance::kFar && minimum.end == End::kDone
-             ? Descend(options, minimum.variables, Distance::kNear, misfit)
-             : minimum;
+  return misfit.NumResultants() > 0
+             ? DescendWithResultants(options, start, distance, misfit)
+             : Descend(options, start, distance, misfit);
 }
 
 }  // namespace elastimate

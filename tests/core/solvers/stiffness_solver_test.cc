@@ -69,7 +69,8 @@ TEST(StiffnessSolver, SharesMemoryInTurns) {
     StiffnessSolver second = first.Sharing();
     const InternalForces of_mesh(scene.mesh, {});
     const auto make_blocks = [&] {
-      return of_mesh.Blocks(Eigen::Vector2d(1, 5), second.Graph());
+      return of_mesh.Blocks(
+          of_mesh.Parameters().Moduli(Eigen::Vector2d(3, 0.4)), second.Graph());
     };
     StiffnessSolver alone(scene.mesh, scene.supports, kind);
     ASSERT_TRUE(alone.Factorize(0.1));
