@@ -20,7 +20,6 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/finer_scene.h"
-#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
@@ -31,7 +30,7 @@ namespace {
 constexpr double kYoungsModulus = 5e6;  // At small strains.
 constexpr std::array<double, 4> kPoissonRatios = {0, 0.3, 0.45, 0.49};
 constexpr std::array<double, 5> kDeviations = {0, 0.001, 0.01, 0.03, 0.1};
-constexpr int kReplicates = 2;      // Of each size of noise on the same mesh.
+constexpr int kReplicates = 2;      // On the same mesh, of each size of noise.
 constexpr int kMaxReplicates = 4;   // That have seeds.
 constexpr int kMaxExperiments = 2;  // On one shape.
 constexpr double kOutliers = 0.03;  // Of the nodes, 20 to 100 sd of the noise.
@@ -49,8 +48,8 @@ constexpr const char* kWorldNames[kNumWorlds] = {"same mesh", "finer world",
 struct Method {
   std::string name;
   std::shared_ptr<const Estimator> estimator;
-  /// Whether it is seen on the same mesh alone: in other worlds it takes five
-  /// to twelve times as long as reduced-fe.
+  /// Whether it is run on the same mesh alone, because in other worlds it takes
+  /// five to twelve times as long as reduced-fe.
   bool is_of_same_mesh = false;
   Loss loss = Loss::kNone;
   bool sees_outliers = false;
@@ -121,7 +120,8 @@ struct Setting {
 struct Specimen {
   UnseenShape shape;
   Scene scene;
-  /// Quadratic elements of its size, half its size and a quarter of its size.
+  /// Quadratic elements of the size of those of `scene`, of half of it and of a
+  /// quarter of it.
   std::array<Scene, 3> finer;
   std::optional<Scene> hexahedra;
 };
@@ -438,8 +438,7 @@ StudyResult RunUnseenStudy(bool is_quick, Progress& progress) {
            {"intervals", "95 %; those of E over the true E"},
            {"finer_world",
             "each tetrahedron cut into 64, with quadratic elements, measured "
-            "at the "
-            "nodes of the mesh"},
+            "at the nodes of the mesh"},
            {"hexahedra",
             "each voxel cut into 125 trilinear hexahedra, likewise; nu up to "
             "0.3"},

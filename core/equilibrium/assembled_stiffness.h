@@ -18,7 +18,7 @@ class AssembledStiffness : public SupportedStiffness {
  public:
   /// Preconditions and exceptions are those of StiffnessSolver.  The mesh and
   /// the supports must outlive this object.  `shared` is null or a solver of
-  /// both, whose memory is shared (StiffnessSolver::Sharing).
+  /// both, with which memory is shared (StiffnessSolver::Sharing).
   AssembledStiffness(const Mesh& mesh, const Supports& supports,
                      SolverKind solver, const StiffnessSolver* shared);
 
@@ -30,7 +30,7 @@ class AssembledStiffness : public SupportedStiffness {
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         const Eigen::MatrixXd& start) override {
-    return Solver().Solve(all, StiffnessSolver::kAccurate, start);
+    return Solver().Solve(all, Tolerance(), start);
   }
 
   Eigen::MatrixXd HeldForces(

@@ -1,5 +1,6 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
@@ -32,13 +33,22 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
-      has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
+      has_unknown_motion_(HasUnknownMotion(*spaces.back())),
+      tolerance_(IsRefined() ? tolerance : StiffnessSolver::kAccurate) {
   const Scene& scene = *spaces.back();
   const HeldGroups groups = GroupByHeld(scene);
   stiffness_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
-    AddStiffness(UsedSpaces(spaces), k, solver, tolerance, shared);
+    const bool is_like_shared =
+        shared != nullptr &&
+        shared->Holds(SupportsOf(*UsedSpaces(spaces).front(), k));
+    AddStiffness(UsedSpaces(spaces), k, solver,
+                 is_like_shared ? shared : nullptr);
+    if (is_like_shared) {
+      shared = nullptr;  // Two of them would factorise in turns.
+    }
   }
+  SetTolerance(tolerance_);
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     held_displacement_.col(k) =
         elastimate::HeldDisplacement(SupportsOf(scene, k));
@@ -53,7 +63,6 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
 
 void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
                                Eigen::Index k, SolverKind solver,
-                               double tolerance,
                                const StiffnessSolver* shared) {
   std::vector<const Mesh*> meshes;
   std::vector<const Supports*> supports;
@@ -61,12 +70,9 @@ void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
     meshes.push_back(&space->mesh);
     supports.push_back(&SupportsOf(*space, k));
   }
-  if (shared != nullptr && !shared->Holds(*supports[0])) {
-    shared = nullptr;
-  }
   if (spaces.size() > 1) {
-    stiffness_.push_back(std::make_unique<RefinedStiffness>(
-        meshes, supports, solver, tolerance, shared));
+    stiffness_.push_back(
+        std::make_unique<RefinedStiffness>(meshes, supports, solver, shared));
   } else {
     stiffness_.push_back(std::make_unique<AssembledStiffness>(
         *meshes[0], *supports[0], solver, shared));
@@ -108,6 +114,20 @@ const NodeGraph& Equilibrium::Graph() const {
     graph_.emplace(*mesh_);
   }
   return *graph_;
+}
+
+void Equilibrium::SetTolerance(double tolerance) {
+  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
+    stiffness->SetTolerance(tolerance);
+  }
+}
+
+bool Equilibrium::SolveRoughly(const Eigen::VectorXd& moduli) {
+  constexpr double kRough = 1e-4;
+  SetTolerance(std::max(kRough, tolerance_));
+  const bool is_solved = Solve(moduli);
+  SetTolerance(tolerance_);
+  return is_solved;
 }
 
 const StiffnessSolver* Equilibrium::SolverOfCoarsest() const {

@@ -51,9 +51,9 @@ class Equilibrium : public ForwardModel {
   /// change displacements by less than the tolerance leaves them as they are
   /// but for a factor.  Where the spaces do not contain each other, the
   /// stiffness of the last one is factorised and the others are not used.
-  /// `shared` is null or a solver of the mesh of the first of them (of the
-  /// last, where that is factorised); its memory is shared with the solver of
-  /// the supports that it holds (StiffnessSolver::Sharing).
+  /// `shared` is null or a solver of the first space, with whose memory the
+  /// first solver of the same held degrees of freedom works
+  /// (StiffnessSolver::Sharing).
   Equilibrium(const std::vector<const Scene*>& spaces, SolverKind solver,
               double tolerance = StiffnessSolver::kAccurate,
               const StiffnessSolver* shared = nullptr);
@@ -68,6 +68,9 @@ class Equilibrium : public ForwardModel {
   /// False when the stiffness is not positive definite to working precision;
   /// there is no u then.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
+
+  /// Solves with an error of 1e-4, in the energy norm, where iterations solve.
+  [[nodiscard]] bool SolveRoughly(const Eigen::VectorXd& moduli);
 
   const Eigen::MatrixXd& Displacement() const override { return displacement_; }
 
@@ -122,7 +125,8 @@ class Equilibrium : public ForwardModel {
     return Forces().Parameters();
   }
   const NodeGraph& Graph() const override;
-  /// Returns the solver of the coarsest space, or null before there is one.
+  /// Returns the solver of the coarsest space, on the supports of the first
+  /// load case; null before there is one.
   const StiffnessSolver* SolverOfCoarsest() const;
   Work WorkDone() const override;
   const std::string& Notice() const override;
@@ -130,8 +134,8 @@ class Equilibrium : public ForwardModel {
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
-                    SolverKind solver, double tolerance,
-                    const StiffnessSolver* shared);
+                    SolverKind solver, const StiffnessSolver* shared);
+  void SetTolerance(double tolerance);
   /// Applies `of_stiffness` to the columns of each load case (n side by side)
   /// with the stiffness on the supports of that load case.
   template <class Function>
@@ -162,6 +166,7 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd directions_;
   double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.
   bool has_unknown_motion_;
+  double tolerance_;  ///< Of iterations.
   int element_passes_ = 0;
 };
 
@@ -172,7 +177,8 @@ class Equilibrium : public ForwardModel {
 [[nodiscard]] Eigen::MatrixXd DisplacementsAt(
     const Scene& scene, const Eigen::VectorXd& parameters,
     SolverKind solver = SolverKind::kAutomatic);
-/// Returns those of the last of some spaces, as Equilibrium takes them.
+/// Returns them for the last of some spaces, which are those that Equilibrium
+/// takes.
 [[nodiscard]] Eigen::MatrixXd DisplacementsAt(
     const std::vector<const Scene*>& spaces, const Eigen::VectorXd& parameters,
     SolverKind solver = SolverKind::kAutomatic);

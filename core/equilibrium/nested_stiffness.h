@@ -20,8 +20,8 @@ namespace elastimate {
 
 /// The stiffness K(theta) of one specimen in some spaces that contain each
 /// other, from coarse to fine, at the same moduli, as far as it does not depend
-/// on supports.  It comes as blocks that can be assembled, or multiplies
-/// columns.
+/// on supports.  It can be assembled from blocks, and
+/// multiplies columns.
 class NestedStiffness {
  public:
   /// Refers to the scenes, which have to stay as they are.
@@ -30,7 +30,7 @@ class NestedStiffness {
   NestedStiffness(const NestedStiffness&) = delete;
   NestedStiffness& operator=(const NestedStiffness&) = delete;
 
-  /// About ten element passes for each space but the coarsest.
+  /// Takes about ten element passes for each space but the coarsest.
   void SetModuli(const Eigen::VectorXd& moduli);
 
   std::size_t NumSpaces() const { return forces_.size(); }
@@ -60,6 +60,7 @@ class NestedStiffness {
   const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
     return finer_[space - 1].diagonal_blocks;
   }
+  /// Gives back their memory, which only RefinedStiffness::Factorize needs.
   void ForgetDiagonalBlocks() {
     for (Finer& finer : finer_) {
       finer.diagonal_blocks.resize(0, 0);

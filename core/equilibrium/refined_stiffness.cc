@@ -15,7 +15,7 @@ constexpr double kCoarseTolerance = 1e-2;
 
 RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                    const std::vector<const Supports*>& supports,
-                                   SolverKind solver, double tolerance,
+                                   SolverKind solver,
                                    const StiffnessSolver* shared)
     : SupportedStiffness(*supports.back()),
       coarsest_(shared == nullptr ? StiffnessSolver(*meshes.front(),
@@ -23,8 +23,7 @@ RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                   : shared->Sharing()),
       make_finest_([mesh = meshes.back(), held = supports.back(), solver] {
         return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
-      }),
-      tolerance_(tolerance) {
+      }) {
   for (std::size_t i = 0; i + 1 < supports.size(); ++i) {
     is_free_of_coarser_.emplace_back(
         (!supports[i]->held).cast<double>().matrix().reshaped());
@@ -76,11 +75,11 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
                                         const Eigen::MatrixXd& start) {
   work_.solves += static_cast<int>(all.cols());
   if (finest_) {
-    return finest_->Solve(all, StiffnessSolver::kAccurate, start);
+    return finest_->Solve(all, Tolerance(), start);
   }
   const Eigen::VectorXd& is_free = IsFree();
   ConjugateGradientOptions options;
-  options.tolerance = tolerance_;
+  options.tolerance = Tolerance();
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(

@@ -28,15 +28,12 @@ class RefinedStiffness : public SupportedStiffness {
   static constexpr int kMostIterations = 200;
 
   /// `meshes` and `supports` are those of each space, from coarse to fine,
-  /// which must outlive this object.  A solution may differ by `tolerance` of
-  /// itself in the energy norm.  `shared` is null or a solver of the coarsest
-  /// space, whose memory is shared (StiffnessSolver::Sharing).  Preconditions
-  /// and exceptions are those of StiffnessSolver.
+  /// which must outlive this object.  `shared` is null or a solver of the
+  /// coarsest space, with which memory is shared (StiffnessSolver::Sharing).
+  /// Preconditions and exceptions are those of StiffnessSolver.
   RefinedStiffness(const std::vector<const Mesh*>& meshes,
                    const std::vector<const Supports*>& supports,
-                   SolverKind solver,
-                   double tolerance = StiffnessSolver::kAccurate,
-                   const StiffnessSolver* shared = nullptr);
+                   SolverKind solver, const StiffnessSolver* shared);
 
   bool Factorize(const NestedStiffness& stiffness,
                  bool with_held_rows) override;
@@ -87,7 +84,6 @@ class RefinedStiffness : public SupportedStiffness {
   /// IsFree of all spaces but the finest.
   std::vector<Eigen::VectorXd> is_free_of_coarser_;
   std::vector<CycleSpace> cycle_;  ///< All spaces but the coarsest.
-  double tolerance_;
   const NestedStiffness* stiffness_ = nullptr;
   /// The smallest eigenvalue of the preconditioned stiffness that any solution
   /// met so far.

@@ -41,6 +41,10 @@ class SupportedStiffness {
     return Solve(all);
   }
 
+  /// Leaves a relative error of `tolerance` in the energy norm from now on,
+  /// where there is no factor; kAccurate without this call.
+  void SetTolerance(double tolerance) { tolerance_ = tolerance; }
+
   /// Returns u in equilibrium without loads where the held degrees of freedom
   /// are displaced by `held` (zero in the free rows): n solves.  This function
   /// and those below need the held rows.
@@ -67,11 +71,13 @@ class SupportedStiffness {
 
  protected:
   explicit SupportedStiffness(const Supports& supports);
-  /// 1 or 0 for each degree of freedom.
+  /// Returns 1 for each free degree of freedom, and 0 for each held one.
   const Eigen::VectorXd& IsFree() const { return is_free_; }
+  double Tolerance() const { return tolerance_; }
 
  private:
   Eigen::VectorXd is_free_;
+  double tolerance_ = StiffnessSolver::kAccurate;
 };
 
 }  // namespace elastimate

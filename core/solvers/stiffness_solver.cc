@@ -1,6 +1,7 @@
 #include "elastimate/core/solvers/stiffness_solver.h"
 
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -108,14 +109,14 @@ bool StiffnessSolver::FactorizeBlocks(MakeBlocks make_blocks) {
   return MakeValues() && FactorizeValues();
 }
 
-// Makes the values of the matrix that was asked for last; tells whether it
-// could.
+// Makes the values of the last matrix of this solver.  Returns false where
+// there is none.
 bool StiffnessSolver::MakeValues() {
   if (make_blocks_) {
     shared_->values = shared_->assembly->ValuesOf(make_blocks_());
     return true;
   }
-  if (poisson_ratio_ == poisson_ratio_) {
+  if (!std::isnan(poisson_ratio_)) {
     shared_->assembly->Combine(poisson_ratio_, shared_->values);
     work_.element_passes += shared_->assembly->HasBases() ? 0 : 1;
     return true;
@@ -139,7 +140,8 @@ bool StiffnessSolver::FactorizeValues() {
   return shared.solver->Factorize(shared.values);
 }
 
-// Factorises what was factorised last, where another solver has changed that.
+// Factorises the last matrix of this solver again where another solver has
+// factorised since.
 bool StiffnessSolver::FactorizeAgain() {
   return own_factorization_ == shared_->num_factorizations ||
          (MakeValues() && FactorizeValues());
@@ -177,7 +179,7 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
       std::ostringstream why;
       why.precision(10);
       why << "did not converge";
-      if (poisson_ratio_ == poisson_ratio_) {
+      if (!std::isnan(poisson_ratio_)) {
         why << " at nu = " << poisson_ratio_;
       }
       FallBackToCholesky(why.str());

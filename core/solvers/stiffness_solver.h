@@ -68,12 +68,19 @@ class StiffnessSolver {
   /// into memory.  `mesh` has to outlive this object.
   StiffnessSolver(const Mesh& mesh, const Supports& supports, SolverKind kind);
 
-  /// Returns a solver of the same mesh and supports that has its analysis, its
-  /// coarse spaces and its factor in the same memory.  Each of the two
-  /// factorises again, by what it last factorised, where it solves after the
-  /// other one has factorised.  Its work is its own.
+  StiffnessSolver(StiffnessSolver&&) noexcept = default;
+  StiffnessSolver& operator=(StiffnessSolver&&) noexcept = default;
+  StiffnessSolver(const StiffnessSolver&) = delete;
+  StiffnessSolver& operator=(const StiffnessSolver&) = delete;
+
+  /// Returns a solver of the same mesh and supports whose analysis, coarse
+  /// spaces and factor are in the same memory.  A solver that solves after
+  /// another one has factorised first factorises its own last matrix again, and
+  /// each counts its own work.  Where multigrid fails for one, all factorise
+  /// from then on.  The mesh has to outlive all of them.
   StiffnessSolver Sharing() const;
-  /// Tells whether these supports hold what those of this solver hold.
+  /// Tells whether these supports hold the degrees of freedom that those of
+  /// this solver hold.
   bool Holds(const Supports& supports) const;
 
   /// Factorises A(nu); does nothing when nu is the present one.  Returns false
@@ -86,8 +93,9 @@ class StiffnessSolver {
   /// when it is singular to working precision.
   /// Precondition: no other solver shares the memory of this one.
   [[nodiscard]] bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
-  /// Factorises the blocks that the function makes, now and when they are
-  /// needed again, which is so until the next factorisation.
+  /// Factorises the blocks that a function makes.  The function is kept until
+  /// the next factorisation, and called again where another solver has
+  /// factorised since; what it refers to has to live as long.
   using MakeBlocks = std::function<Eigen::MatrixXd()>;
   [[nodiscard]] bool FactorizeBlocks(MakeBlocks make_blocks);
 
@@ -133,9 +141,11 @@ class StiffnessSolver {
   std::shared_ptr<Shared> shared_;
   /// This is NaN before the first factorisation and after a failed one.
   double poisson_ratio_;
-  /// Makes the blocks of the present factorisation; empty where it is of nu.
+  /// Makes the blocks of the last factorisation of this solver; empty where
+  /// that was of nu.
   MakeBlocks make_blocks_;
-  /// Which factorisation is the present one.
+  /// The number, among all in the shared memory, of the last factorisation of
+  /// this solver.
   std::int64_t own_factorization_ = 0;
   Work work_;
 };

@@ -122,7 +122,8 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           Estimate& estimate) {
   std::vector<std::optional<Eigen::VectorXd>> starts = StartsOf(scene, misfit);
   starts.push_back(VirtualFieldsStart(scene, options, estimate));
-  // Descents to one minimum end in costs that differ by the rounding of them.
+  // The costs of descents to the same minimum differ by rounding, which must
+  // not choose between them.
   constexpr double kSame = 1e-9;
   std::optional<BoundedMinimum> best;
   for (const std::optional<Eigen::VectorXd>& start : starts) {

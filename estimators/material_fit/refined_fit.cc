@@ -114,11 +114,11 @@ class Refinement {
   /// there are some.
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
-      const std::vector<const Scene*>& coarser = {},
-      const SpaceFit* last = nullptr) {
-    auto space = std::make_unique<SpaceFit>(
-        scene, options_, coarser,
-        linear_ && !coarser.empty() ? linear_->SolverOfCoarsest() : nullptr);
+      const std::vector<const Scene*>& coarser = {}, SpaceFit* last = nullptr) {
+    auto space = std::make_unique<SpaceFit>(scene, options_, coarser,
+                                            last != nullptr && !coarser.empty()
+                                                ? last->SolverOfCoarsest()
+                                                : nullptr);
     space->Misfit().SetNeighbours(neighbours_);
     if (last != nullptr && last->Fit().displacement.size() > 0) {
       space->Misfit().Model().BeginWith(

@@ -49,7 +49,7 @@ class SpaceFit {
   /// `coarser` are spaces of the same specimen, from coarse to fine, by which
   /// systems are solved without a factor of this one; none where that is
   /// faster.  They and `options` must outlive this object.  `shared` is null or
-  /// a solver of the coarsest space, whose memory is shared.
+  /// a solver of the coarsest space, with which memory is shared.
   SpaceFit(Scene scene, const EstimatorOptions& options,
            const std::vector<const Scene*>& coarser = {},
            const StiffnessSolver* shared = nullptr);

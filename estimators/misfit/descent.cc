@@ -11,9 +11,9 @@
 namespace elastimate {
 namespace {
 
-// Steps below this part of a standard error end the search from far, or the
-// fit.
-constexpr double kNearOfErrors = 1;
+// Steps that are shorter than these parts of a standard error end the search
+// from far, and the search from near.
+constexpr double kNearOfErrors = 0.1;
 constexpr double kSmallestStepOfErrors = 1e-2;
 
 BoundedMinimum Search(const EstimatorOptions& estimator_options,
@@ -53,8 +53,8 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
       misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
 }
 
-// From far, the radius delays the end of a search, and another one follows
-// without it.
+// The small radius of a search from far shortens its last steps, so it ends
+// early, and one without that radius follows.
 BoundedMinimum Descend(const EstimatorOptions& options,
                        const Eigen::VectorXd& start, Distance distance,
                        DisplacementMisfit& misfit) {

@@ -161,7 +161,8 @@ std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
     const Eigen::VectorXd& unit_moduli, Loss loss) {
   x_.resize(0);
   placed_.reset();
-  if (!model_->Solve(unit_moduli)) {
+  if (motion_ ? !model_->Solve(unit_moduli)
+              : !small_strain_model_->SolveRoughly(unit_moduli)) {
     return std::nullopt;
   }
   const Eigen::MatrixXd& held = small_strain_model_->SupportResponse();

@@ -87,6 +87,7 @@ bool ReducedModel::SetPole(double poisson_ratio) {
   if (!solver_.Factorize(poisson_ratio)) {
     return false;
   }
+  uses_multigrid_ = UsesMultigrid();
   const double tolerance =
       solver_.UsesMultigrid() ? StiffnessSolver::kAccurate : 0;
   Eigen::MatrixXd loads(responses_[0].g0.size(), NumResponses());

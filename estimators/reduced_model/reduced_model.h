@@ -83,8 +83,11 @@ class ReducedModel {
   /// nu: num_dofs x num_responses.  O(num_nodes m).
   Eigen::MatrixXd Responses(double poisson_ratio) const;
 
-  /// Whether solves are inexact.
-  bool UsesMultigrid() const { return solver_.UsesMultigrid(); }
+  /// Whether solves for the bases were inexact; before there are bases, whether
+  /// they will be.
+  bool UsesMultigrid() const {
+    return uses_multigrid_ || solver_.UsesMultigrid();
+  }
 
   /// What relates t to E.
   SectionModel Section() const { return section_model_; }
@@ -149,6 +152,7 @@ class ReducedModel {
   StiffnessSolver solver_;
   Eigen::Index num_load_cases_;
   std::vector<Response> responses_;
+  bool uses_multigrid_ = false;
   int element_passes_ = 0;
   int version_ = 0;
 };

@@ -94,45 +94,48 @@ class BoundedSearch {
 
   BoundedMinimum Minimize(const ceres::Solver::Options& options) {
     constexpr int kMaxRounds = 4;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem_, &summary);
-    for (int round = 0; round < kMaxRounds && summary.IsSolutionUsable();
+    Solve(options);
+    for (int round = 0; round < kMaxRounds && summary_.IsSolutionUsable();
          ++round) {
       const Eigen::Index num_held = HoldOnBounds();
       if (num_held == 0) {
         break;
       }
       if (num_held < x_.size()) {
-        ceres::Solve(options, &problem_, &summary);
+        Solve(options);
       }
       if (!ReleaseInwards()) {
         break;
       }
-      ceres::Solve(options, &problem_, &summary);
+      Solve(options);
     }
     BoundedMinimum minimum;
-    // Where there is no value at the start, Ceres knows no cost.
-    minimum.cost = summary.IsSolutionUsable()
-                       ? summary.final_cost
-                       : std::numeric_limits<double>::infinity();
-    // Ceres evaluates the step that its tolerance ends the search with, and
-    // does not take it.
-    if (summary.termination_type == ceres::CONVERGENCE &&
-        cost_->CostOfLast() <=
-            (1 + options.function_tolerance) * minimum.cost) {
-      x_ = cost_->Last();
-      minimum.cost = cost_->CostOfLast();
-    }
+    minimum.cost = least_cost_;
     minimum.variables = x_;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
       minimum.on_bound.push_back(SideOf(i));
     }
-    minimum.end = EndOf(summary);
-    minimum.message = "Ceres: " + summary.message;
+    minimum.end = EndOf(summary_);
+    minimum.message = "Ceres: " + summary_.message;
     return minimum;
   }
 
  private:
+  void Solve(const ceres::Solver::Options& options) {
+    ceres::Solve(options, &problem_, &summary_);
+    // Where there is no value at the start, Ceres knows no cost.
+    least_cost_ = summary_.IsSolutionUsable()
+                      ? summary_.final_cost
+                      : std::numeric_limits<double>::infinity();
+    // Ceres evaluates a step that changes the cost by less than its tolerance,
+    // and ends without taking it.
+    if (summary_.termination_type == ceres::CONVERGENCE &&
+        cost_->CostOfLast() <= (1 + options.function_tolerance) * least_cost_) {
+      x_ = cost_->Last();
+      least_cost_ = cost_->CostOfLast();
+    }
+  }
+
   Side SideOf(Eigen::Index i) const {
     // A variable this close to a bound lies on it.
     constexpr double kOnBound = 1e-9;
@@ -190,6 +193,8 @@ class BoundedSearch {
   Eigen::VectorXd x_;
   VariablesCost* cost_ = nullptr;  ///< The problem owns it.
   ceres::Problem problem_;
+  ceres::Solver::Summary summary_;
+  double least_cost_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

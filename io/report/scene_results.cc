@@ -222,8 +222,8 @@ struct SolvedScenes {
   std::optional<Scene> divided;
 
   const Scene& Finest() const { return divided ? *divided : undivided; }
-  /// Returns them after `scene`, which the fit began with, by whose elements
-  /// their systems are solved.
+  /// Returns the spaces of Equilibrium.  `scene` comes first where the fit had
+  /// finer elements.
   std::vector<const Scene*> FromCoarseToFine(const Scene& scene) const {
     std::vector<const Scene*> spaces;
     if (scene.mesh.NumNodes() < undivided.mesh.NumNodes()) {
@@ -356,7 +356,8 @@ void AddModel(const Scene& scene, const Scene& modelled,
                               fitted);
   }
   if (const auto coarser = CoarserScene(scene, solved, estimate)) {
-    Equilibrium own(*coarser, solver);
+    Equilibrium own({&*coarser}, solver, StiffnessSolver::kAccurate,
+                    model.SolverOfCoarsest());
     if (own.Solve(own.Forces().Parameters().Moduli(values))) {
       AddMeshError(fitted, own.Displacement(), collector);
     }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace elastimate {
@@ -36,6 +37,31 @@ TEST(MinimizeOverVariables, KeepsBounds) {
   EXPECT_EQ(minimum.on_bound[0], Side::kNone);
   EXPECT_EQ(minimum.on_bound[1], Side::kUpper);
   EXPECT_NEAR(minimum.cost, 0.125, 1e-9);
+}
+
+TEST(MinimizeOverVariables, TakesTheStepThatEndsTheSearch) {
+  // All that can be gained is less than the tolerance of the cost.
+  const auto with_floor = [](const Eigen::VectorXd& x,
+                             Eigen::VectorXd* residual,
+                             Eigen::MatrixXd* jacobian) {
+    *residual = Eigen::Vector3d(x(0) - 1, x(1) - 2, 10);
+    if (jacobian != nullptr) {
+      *jacobian = Eigen::Matrix<double, 3, 2>::Identity();
+    }
+    return true;
+  };
+  ceres::Solver::Options options = Options();
+  options.function_tolerance = 1e-3;
+  for (const double upper : {5.0, 1.95}) {
+    const BoundedMinimum minimum =
+        MinimizeOverVariables(with_floor, 3, {Bounds{}, Bounds{{}, upper}},
+                              Eigen::Vector2d(0.9, 1.94), options);
+    const double y = std::min(2.0, upper);
+    EXPECT_EQ(minimum.end, End::kDone);
+    EXPECT_NEAR(minimum.variables(0), 1, 1e-4);
+    EXPECT_NEAR(minimum.variables(1), y, 1e-4);
+    EXPECT_NEAR(minimum.cost, 50 + (2 - y) * (2 - y) / 2, 1e-6);
+  }
 }
 
 TEST(MinimizeOverVariables, HasNoCostWithoutAValueAtTheStart) {
