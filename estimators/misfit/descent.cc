@@ -11,9 +11,7 @@
 namespace elastimate {
 namespace {
 
-// Steps that are shorter than these parts of a standard error end the search
-// from far, and the search from near.
-constexpr double kNearOfErrors = 0.1;
+// Steps below this part of a standard error end a search.
 constexpr double kSmallestStepOfErrors = 1e-2;
 
 BoundedMinimum Search(const EstimatorOptions& estimator_options,
@@ -28,10 +26,8 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
   options.initial_trust_region_radius =
       distance == Distance::kFar ? 1 : kLargeRadius;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
-  const double smallest_step =
-      distance == Distance::kFar ? kNearOfErrors : kSmallestStepOfErrors;
-  options.function_tolerance =
-      smallest_step * smallest_step / static_cast<double>(misfit.NumRows());
+  options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
+                               static_cast<double>(misfit.NumRows());
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-11;
   options.logging_type = ceres::SILENT;
@@ -53,8 +49,8 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
       misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
 }
 
-// The small radius of a search from far shortens its last steps, so it ends
-// early, and one without that radius follows.
+// The small radius of a search from far shortens its last steps as well, so
+// that it ends early; one without that radius follows.
 BoundedMinimum Descend(const EstimatorOptions& options,
                        const Eigen::VectorXd& start, Distance distance,
                        DisplacementMisfit& misfit) {
