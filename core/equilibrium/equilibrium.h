@@ -62,8 +62,8 @@ class Equilibrium : public ForwardModel {
   Equilibrium(Equilibrium&&) noexcept;
   Equilibrium& operator=(Equilibrium&&) noexcept;
 
-  /// Solves for u at these moduli: an element pass, for each set of held
-  /// degrees of freedom a factorisation, and a solve for each load case (one
+  /// Solves for u at these moduli: an element pass and a factorisation for each
+  /// set of held degrees of freedom, and a solve for each load case (one
   /// more, and a pass, for each set of held displacements that are not zero).
   /// False when the stiffness is not positive definite to working precision;
   /// there is no u then.

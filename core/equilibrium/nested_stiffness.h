@@ -20,8 +20,7 @@ namespace elastimate {
 
 /// The stiffness K(theta) of one specimen in some spaces that contain each
 /// other, from coarse to fine, at the same moduli, as far as it does not depend
-/// on supports.  It can be assembled from blocks, and
-/// multiplies columns.
+/// on supports.  It can be assembled from blocks, and multiplies columns.
 class NestedStiffness {
  public:
   /// Refers to the scenes, which have to stay as they are.

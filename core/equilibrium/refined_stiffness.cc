@@ -25,8 +25,7 @@ RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
         return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
       }) {
   for (std::size_t i = 0; i + 1 < supports.size(); ++i) {
-    is_free_of_coarser_.emplace_back(
-        (!supports[i]->held).cast<double>().matrix().reshaped());
+    is_free_of_coarser_.push_back(IsFreeOn(*supports[i]));
   }
 }
 
@@ -75,7 +74,7 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
                                         const Eigen::MatrixXd& start) {
   work_.solves += static_cast<int>(all.cols());
   if (finest_) {
-    return finest_->Solve(all, Tolerance(), start);
+    return finest_->Solve(all, StiffnessSolver::kAccurate, start);
   }
   const Eigen::VectorXd& is_free = IsFree();
   ConjugateGradientOptions options;

@@ -3,7 +3,11 @@
 namespace elastimate {
 
 SupportedStiffness::SupportedStiffness(const Supports& supports)
-    : is_free_((!supports.held).cast<double>().matrix().reshaped()) {}
+    : is_free_(IsFreeOn(supports)) {}
+
+Eigen::VectorXd SupportedStiffness::IsFreeOn(const Supports& supports) {
+  return (!supports.held).cast<double>().matrix().reshaped();
+}
 
 Eigen::MatrixXd SupportedStiffness::Extend(const Eigen::MatrixXd& held) {
   return held - Solve(HeldForcesTransposed(held));

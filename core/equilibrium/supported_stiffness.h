@@ -6,7 +6,6 @@
 
 #include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/mesh/node_graph.h"
-#include "elastimate/core/scene/scene.h"
 #include "elastimate/core/scene/supports.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 
@@ -73,6 +72,8 @@ class SupportedStiffness {
   explicit SupportedStiffness(const Supports& supports);
   /// Returns 1 for each free degree of freedom, and 0 for each held one.
   const Eigen::VectorXd& IsFree() const { return is_free_; }
+  /// Returns what IsFree is on other supports.
+  static Eigen::VectorXd IsFreeOn(const Supports& supports);
   double Tolerance() const { return tolerance_; }
 
  private:

@@ -144,9 +144,8 @@ class DisplacementMisfit {
   /// What explains displacements or resultants best where the moduli are 1, in
   /// the sum of squares or, with a loss, that of absolute deviations; empty
   /// when they oppose the loads.  Of resultants alone the cost is zero.  For
-  /// starts of searches: iterations leave an error of 1e-4 (SolveRoughly),
-  /// which takes a third of them away on large meshes. Precondition: small
-  /// strains.
+  /// starts of searches: iterations leave an error of 1e-4 (SolveRoughly).
+  /// Precondition: small strains.
   std::optional<ScaleFit> FitScale(const Eigen::VectorXd& unit_moduli,
                                    Loss loss);
   /// The factor on all moduli by which the forces of supports, which nothing
