@@ -7,19 +7,17 @@
 #include <memory>
 #include <optional>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/linear_algebra.h"
+#include "benchmarks/finer_world.h"
 #include "benchmarks/processor_time.h"
 #include "benchmarks/trial.h"
 #include "benchmarks/unseen_shapes.h"
 #include "benchmarks/unseen_summary.h"
-#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
-#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
@@ -34,8 +32,7 @@ constexpr int kReplicates = 2;      // On the same mesh, of each size of noise.
 constexpr int kMaxReplicates = 4;   // That have seeds.
 constexpr int kMaxExperiments = 2;  // On one shape.
 constexpr double kOutliers = 0.03;  // Of the nodes, 20 to 100 sd of the noise.
-// What the displacements of a finer world may be wrong by, in the energy norm.
-constexpr double kTolerance = 1e-4;
+constexpr int kDivisions = 2;       // Of the finer world.
 
 // Trilinear hexahedra lock at larger nu.  At 0.45 hexahedra of this size are
 // 0.5 to 1 % too stiff; up to this nu they are less than half of that.
@@ -120,20 +117,13 @@ struct Setting {
 struct Specimen {
   UnseenShape shape;
   Scene scene;
-  /// Quadratic elements of the size of those of `scene`, of half of it and of a
-  /// quarter of it.
-  std::array<Scene, 3> finer;
+  FinerWorld finer;
   std::optional<Scene> hexahedra;
 };
 
 Specimen MakeSpecimen(const UnseenShape& shape) {
-  Specimen specimen = {
-      shape, UnmeasuredScene(shape, TetrahedralMesh(shape.body)), {}, {}};
-  const Scene* coarser = &specimen.scene;
-  for (Scene& finer : specimen.finer) {
-    finer = FinerScene(*coarser);
-    coarser = &finer;
-  }
+  const Scene scene = UnmeasuredScene(shape, TetrahedralMesh(shape.body));
+  Specimen specimen = {shape, scene, {scene, kDivisions}, {}};
   if (shape.hexahedra_per_edge > 0) {
     specimen.hexahedra = UnmeasuredScene(
         shape, HexahedralMesh(shape.body, shape.hexahedra_per_edge));
@@ -153,37 +143,26 @@ bool IsDone(const Setting& setting) {
          0;
 }
 
-// Returns the displacements of all experiments in a world, whose first nodes
-// are those of the mesh.
-Eigen::MatrixXd DisplacementsIn(const Specimen& specimen, int world,
-                                const IsotropicElasticity& truth) {
-  if (world != kFinerWorld) {
-    return DisplacementsAt(
-        world == kSameMesh ? specimen.scene : *specimen.hexahedra,
-        truth.Parameters());
-  }
-  const auto& [quadratic, half, quarter] = specimen.finer;
-  Equilibrium model({&specimen.scene, &quadratic, &half, &quarter},
-                    SolverKind::kAutomatic, kTolerance);
-  if (!model.Solve(model.Forces().Parameters().Moduli(truth.Parameters()))) {
-    throw std::runtime_error("the finer world has no displacements");
-  }
-  return model.Displacement();
-}
-
 // Returns all experiments, measured without noise at the nodes of the mesh.
 Scene Measured(const Specimen& specimen, int world,
                const IsotropicElasticity& truth) {
-  const Eigen::MatrixXd displacements = DisplacementsIn(specimen, world, truth);
   Scene scene = specimen.scene;
-  const Mesh& mesh = scene.mesh;
+  if (world == kFinerWorld) {
+    specimen.finer.Measure(truth, scene);
+    return scene;
+  }
+  if (world == kSameMesh) {
+    Measure(truth, scene);
+    return scene;
+  }
+  // The nodes of the mesh are the first ones of the hexahedra.
+  Scene hexahedra = *specimen.hexahedra;
+  Measure(truth, hexahedra);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
-        displacements.col(Eigen::Index(k))
-            .head(mesh.NumDofs())
-            .reshaped(mesh.Dimension(), mesh.NumNodes());
+        hexahedra.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
-  scene.origin = world == kSameMesh ? Origin::kComputed : Origin::kMeasured;
+  scene.origin = Origin::kMeasured;
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "elastimate/core/algebra/dense_algebra.h"
@@ -202,6 +203,52 @@ double LargestError(const FreeParameters& free, const Eigen::VectorXd& x,
          kStandardErrors;
 }
 
+// Returns the way from x to the farther end of the range of a ratio that is
+// next to the other one; zero where it is not, and for what has no range.
+double WayAcrossRange(const FreeParameters& free, const Eigen::VectorXd& x,
+                      Eigen::Index i) {
+  constexpr double kNextToEnd = 0.02;
+  const Bounds& bounds = free.VariableBounds()[i];
+  if (!bounds.lower || !bounds.upper ||
+      free.Free(i).law_parameter->is_modulus) {
+    return 0;
+  }
+  const double margin = kNextToEnd * (*bounds.upper - *bounds.lower);
+  if (*bounds.upper - x(i) < margin) {
+    return *bounds.lower - x(i);
+  }
+  return x(i) - *bounds.lower < margin ? *bounds.upper - x(i) : 0;
+}
+
+// Moves x to the least square sum of the misfit where x(i) is as it is, and
+// returns that.  Ends early where that is more than `most`, or there is no
+// model; the square sum is infinite then.
+double LeastWithOneHeld(Eigen::Index i, double variance, double most,
+                        DisplacementMisfit& misfit, Eigen::VectorXd& x) {
+  constexpr int kMostSteps = 4;
+  constexpr double kSettledGain = 0.1;  // Of the variance.
+  const Eigen::VectorXd held = Eigen::VectorXd::Unit(x.size(), i);
+  double square_sum = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kMostSteps; ++step) {
+    Eigen::VectorXd rows;
+    Eigen::MatrixXd sensitivities;
+    if (!misfit.Evaluate(x, &rows, &sensitivities)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    square_sum = SquaredNorm(rows);
+    const Least least = LeastSquareSum(
+        rows, sensitivities, InnerProducts(sensitivities, sensitivities), held);
+    if (!(least.square_sum < most)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    if (square_sum - least.square_sum < kSettledGain * variance) {
+      break;
+    }
+    x = Moved(misfit.Free(), x, least.change);
+  }
+  return square_sum;
+}
+
 }  // namespace
 
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
@@ -245,6 +292,44 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
          LeastSquareSum(rows, sensitivities, information, a).square_sum,
          2 * a.dot(newton) / variance},
         beforehand, misfit);
+  }
+  return added;
+}
+
+Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
+                                      const Eigen::MatrixXd& covariance,
+                                      double variance,
+                                      const Eigen::VectorXd& minimum,
+                                      DisplacementMisfit& misfit) {
+  constexpr double kAlike = 9;      // Chi^2.
+  constexpr double kHopeless = 25;  // Chi^2.
+  Eigen::MatrixXd added = Eigen::MatrixXd::Zero(x.size(), x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double way = WayAcrossRange(misfit.Free(), x, i);
+    Eigen::VectorXd rows;
+    if (way == 0 || !misfit.Evaluate(minimum, &rows, nullptr)) {
+      continue;
+    }
+    const double least = SquaredNorm(rows);
+    Eigen::VectorXd looked_at = minimum;
+    double largest = covariance(i, i);
+    for (const double share : {1.0 / 32, 1.0 / 8, 1.0 / 2}) {
+      looked_at(i) = x(i) + share * way;
+      const double rise =
+          LeastWithOneHeld(i, variance, least + kHopeless * variance, misfit,
+                           looked_at) -
+          least;
+      if (!(rise < kHopeless * variance)) {
+        break;
+      }
+      const Eigen::VectorXd move = looked_at - x;
+      const double of_look = move(i) * move(i) / std::max(rise / variance, 1.0);
+      if (rise < kAlike * variance && of_look > largest) {
+        added +=
+            (of_look - largest) / (move(i) * move(i)) * move * move.transpose();
+        largest = of_look;
+      }
+    }
   }
   return added;
 }

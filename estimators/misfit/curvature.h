@@ -39,6 +39,28 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::VectorXd& beforehand,
                                       DisplacementMisfit& misfit);
 
+/// What a covariance of the variables understates at x where a ratio has ended
+/// next to an end of its range: coarse elements resist there ever more, so that
+/// the misfit has a narrow dip, whose width says nothing of how well the data
+/// know the ratio.
+///
+/// For each such ratio, the square sum of the residual is looked at where the
+/// ratio is 1/32, 1/8 and 1/2 of its range farther inside, at the least over
+/// all other variables.  Where it is there chi^2 times the `variance` of a row
+/// above that at `minimum`, with chi^2 < 9, a parabola through both would mean
+/// an error of m / sqrt(max(chi^2, 1)) for the move m: what the covariance
+/// lacks to the largest of these is added along m.
+///
+/// `minimum` is that of `misfit`, the misfit whose minimum is x or that of the
+/// same measurement in a coarser space.  Costs nothing where no ratio is next to
+/// an end, one to four evaluations for each look else; no further look is made
+/// beyond chi^2 = 25.
+Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
+                                      const Eigen::MatrixXd& covariance,
+                                      double variance,
+                                      const Eigen::VectorXd& minimum,
+                                      DisplacementMisfit& misfit);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_MISFIT_CURVATURE_H_

@@ -401,6 +401,9 @@ void AddOtherModel(const BoundedMinimum& found, const FreeParameters& free,
 // Where resultants are weighed in the rows, these are not those of the misfit.
 void AddCurvature(const CurvedMisfit& curved, MinimumErrors& errors) {
   if (curved.misfit.NumResultants() == 0) {
+    errors.total += CovarianceAcrossRange(errors.corrected, errors.total,
+                                          errors.variance, curved.minimum,
+                                          curved.misfit);
     errors.total += CovarianceOfCurvature(
         curved.minimum, errors.total,
         KnownBeforehand(curved.misfit.Free(), errors.variables,

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "elastimate/estimators/material_fit/iterative_fe.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
+#include "tests/element_kinds.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
 
@@ -95,6 +97,19 @@ TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
                   0.1);
     }
   }
+}
+
+// In torsion only the mesh tells something of Poisson's ratio, in a dip next to
+// 1/2 that is narrower than the errors.
+TEST(GlobalMinimumStatistics, ADipOfTheMeshIsNoKnowledge) {
+  Scene scene = ShapeScene("dumbbell", "torsion");
+  testing::MeasureInCutWorld({kTrueYoungsModulus, 0}, scene);
+  AddNoise(0.1, 7, scene);
+  const Estimate estimate = ReducedFe().Run(scene, {});
+  const std::optional<double> error = estimate.PoissonRatioStandardError();
+  EXPECT_GT(estimate.elasticity.poisson_ratio, 0.49);
+  EXPECT_TRUE(!estimate.IsUsable() ||
+              (error && 3 * *error > estimate.elasticity.poisson_ratio));
 }
 
 // A crest lies between the start at 0.45 and the minimum.
