@@ -72,6 +72,9 @@ class ReducedDescent {
   /// Returns the bounds of the variables, narrowed to where the model is
   /// trusted.
   std::vector<Bounds> TrustBounds() const;
+  /// Returns the most iterations of a solve next to the reduced model that are
+  /// cheaper than another pole.
+  int MostIterations();
   Eigen::MatrixXd WithoutHeld(const Eigen::MatrixXd& displacement) const {
     return displacement - misfit_.SmallStrainModel().HeldDisplacement();
   }
@@ -243,12 +246,21 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
   return forces;
 }
 
+int ReducedDescent::MostIterations() {
+  if (!misfit_.SmallStrainModel().IsRefined()) {
+    return kMostIterationsByFactor;
+  }
+  // Another pole would take as many for each of its solves: where a body is
+  // thin, these are more than a hundred.
+  const Work work = misfit_.SmallStrainModel().WorkDone();
+  return std::max(kMostIterationsByCycle,
+                  work.iterations / std::max(work.solves, 1));
+}
+
 bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
-  const int most = misfit_.SmallStrainModel().IsRefined()
-                       ? kMostIterationsByCycle
-                       : kMostIterationsByFactor;
+  const int most = MostIterations();
   const std::optional<int> iterations = SolveNearby(
       moduli_, forces, tolerances, most, misfit_.SmallStrainModel(), x);
   element_passes_ += 1 + iterations.value_or(most);

@@ -16,6 +16,7 @@
 #include "tests/element_kinds.h"
 #include "tests/regions.h"
 #include "tests/scenes.h"
+#include "tests/shapes.h"
 
 namespace elastimate {
 namespace {
@@ -95,6 +96,19 @@ TEST(RefinedFit, NextToIncompressibleTheMeshErrorIsKnown) {
   EXPECT_GT(estimate.elasticity.poisson_ratio, 0.49);
   EXPECT_FALSE(estimate.Has(FindingCode::kMeshErrorUnknown));
   EXPECT_FALSE(estimate.Has(FindingCode::kNumericalFailure));
+}
+
+// Systems of thin bodies take more than a hundred iterations.
+TEST(RefinedFit, OfAThinBodyIsCertified) {
+  Scene scene = testing::ShapeScene("dome", "tension");
+  MeasureInFinerWorld({5e4, 0}, scene);
+  AddNoise(0.01, 1, scene);
+  EstimatorOptions options;
+  options.refinement = Refine::kNever;
+  options.kinematics = Kinematics::kSmall;
+  const Estimate estimate = Fitted(scene, options);
+  EXPECT_FALSE(estimate.Has(FindingCode::kFitNotCertified)) << estimate.message;
+  EXPECT_LE(estimate.work.factorizations, 12);
 }
 
 TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {
