@@ -326,7 +326,10 @@ def speed_accuracy_points(path):
             cells = group(own, "world", "scene")
             for line, world in zip(panels, worlds):
                 for axes, scene in zip(line, scenes):
-                    points = cells[world + scene]
+                    points = cells.get(world + scene)
+                    if points is None:  # What is left out is listed beside the table.
+                        axes.set_axis_off()
+                        continue
                     draw_methods(axes, points, parameter)
                     axes.set_xscale("log")
                     axes.set_yscale("log")

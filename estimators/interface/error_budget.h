@@ -24,6 +24,9 @@ struct ErrorBudget {
   ParameterErrors outliers;
   /// What the elements miss (Estimate::discretization_error).
   ParameterErrors discretization;
+  /// By values farther away that fit better than a parabola says
+  /// (CovarianceOfCurvature, CovarianceAcrossRange).
+  ParameterErrors curvature;
   /// The spread of the laws that fit alike.
   ParameterErrors law;
   /// What small-strain elasticity leaves out of strains and rotations as large

@@ -75,8 +75,8 @@ void EnterBudget(const std::vector<Eigen::Index>& estimated,
                                     std::max(before(place), 1e-300));
     for (ParameterErrors* const part :
          {&budget.noise, &budget.model, &budget.outliers,
-          &budget.discretization, &budget.law, &budget.kinematics,
-          &budget.section}) {
+          &budget.discretization, &budget.curvature, &budget.law,
+          &budget.kinematics, &budget.section}) {
       if (part->size() == num_parameters) {
         (*part)(i) *= factor;
       }

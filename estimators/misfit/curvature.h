@@ -52,9 +52,9 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
 /// lacks to the largest of these is added along m.
 ///
 /// `minimum` is that of `misfit`, the misfit whose minimum is x or that of the
-/// same measurement in a coarser space.  Costs nothing where no ratio is next to
-/// an end, one to four evaluations for each look else; no further look is made
-/// beyond chi^2 = 25.
+/// same measurement in a coarser space.  Costs nothing where no ratio is next
+/// to an end, one to four evaluations for each look else; no further look is
+/// made beyond chi^2 = 25.
 Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
                                       const Eigen::MatrixXd& covariance,
                                       double variance,

@@ -399,17 +399,21 @@ void AddOtherModel(const BoundedMinimum& found, const FreeParameters& free,
 }
 
 // Where resultants are weighed in the rows, these are not those of the misfit.
-void AddCurvature(const CurvedMisfit& curved, MinimumErrors& errors) {
-  if (curved.misfit.NumResultants() == 0) {
-    errors.total += CovarianceAcrossRange(errors.corrected, errors.total,
-                                          errors.variance, curved.minimum,
-                                          curved.misfit);
-    errors.total += CovarianceOfCurvature(
-        curved.minimum, errors.total,
-        KnownBeforehand(curved.misfit.Free(), errors.variables,
-                        errors.variance),
-        curved.misfit);
+void AddCurvature(const CurvedMisfit& curved, MinimumErrors& errors,
+                  Estimate& estimate) {
+  if (curved.misfit.NumResultants() > 0) {
+    return;
   }
+  const FreeParameters& free = curved.misfit.Free();
+  Eigen::MatrixXd added =
+      CovarianceAcrossRange(errors.corrected, errors.total, errors.variance,
+                            curved.minimum, curved.misfit);
+  added += CovarianceOfCurvature(
+      curved.minimum, errors.total + added,
+      KnownBeforehand(free, errors.variables, errors.variance), curved.misfit);
+  errors.total += added;
+  estimate.error_budget.curvature =
+      ErrorsOfVariables(free, errors.corrected, added);
 }
 
 // A minimum, the rows of the misfit there, and their derivatives S.
@@ -443,7 +447,7 @@ void EnterErrorsOfKnown(const Scene& scene, const FreeParameters& free,
     }
     for (ParameterErrors* const part :
          {&budget.noise, &budget.model, &budget.outliers,
-          &budget.discretization}) {
+          &budget.discretization, &budget.curvature}) {
       if (part->size() > 0) {
         (*part)(place) = Estimate::kUnknown;
       }
@@ -514,7 +518,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   AddAxisRotation(scene, errors.variables, rows, sensitivities, inverse, misfit,
                   errors, evidence, estimate);
   if (curved != nullptr) {
-    AddCurvature(*curved, errors);
+    AddCurvature(*curved, errors, estimate);
   }
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =

@@ -212,6 +212,7 @@ Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
           {"model", of(budget.model)},
           {"outliers", of(budget.outliers)},
           {"discretization", of(budget.discretization)},
+          {"curvature", of(budget.curvature)},
           {"law", of(budget.law)},
           {"kinematics", of(budget.kinematics)},
           {"section", of(budget.section)},

@@ -228,6 +228,7 @@ constexpr const char* kDocumentedKeys[] = {
     "/error_budget/model/youngs_modulus",
     "/error_budget/outliers/youngs_modulus",
     "/error_budget/discretization/poisson_ratio",
+    "/error_budget/curvature/poisson_ratio",
     "/error_budget/law/youngs_modulus",
     "/findings",
     "/diagnostics/identifiability_angle_deg",

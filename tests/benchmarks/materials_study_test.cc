@@ -132,10 +132,11 @@ class MaterialsStudyRemade : public testing::ProgramTest {
   }
 
   // Where virtual fields give a bad start, a plain descent from there takes
-  // hundreds of factorisations.
+  // hundreds of factorisations.  Most fits take some ten; a law that is far
+  // from the right one takes several starts.
   void ExpectFewFactorizations() const {
     for (const TableRow& row : By("iterative-fe")) {
-      EXPECT_LT(row.Number("factorizations [1]"), 60)
+      EXPECT_LT(row.Number("factorizations [1]"), 120)
           << row.Text("factor") << " " << row.Text("level");
     }
   }

@@ -346,8 +346,9 @@ TEST_P(Conformance, TheErrorBudgetMakesUpTheStandardErrors) {
   const ErrorBudget& budget = estimate.error_budget;
   ASSERT_TRUE(budget.noise.allFinite() && budget.noise.size() == 2);
   Eigen::Array2d sum = Eigen::Array2d::Zero();
-  for (const ParameterErrors& part : {budget.noise, budget.bias, budget.model,
-                                      budget.outliers, budget.discretization}) {
+  for (const ParameterErrors& part :
+       {budget.noise, budget.bias, budget.model, budget.outliers,
+        budget.discretization, budget.curvature}) {
     if (part.size() > 0) {
       sum += part.array().isNaN().select(0, part.array().square());
     }
