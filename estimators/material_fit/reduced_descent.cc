@@ -17,8 +17,8 @@ namespace elastimate {
 namespace {
 
 // The step that is left at a minimum, and what the errors of u and of the
-// adjoint may change it by, in standard errors.
-constexpr double kLargestStep = 0.02;
+// adjoint may change it by, each, in standard errors.
+constexpr double kLargestStep = 0.05;
 constexpr double kStepAccuracy = 0.01;
 // The standard deviation of a row that counts as noise at least, where the norm
 // of all rows is 1: exact displacements are fitted to a part of it.
@@ -27,9 +27,10 @@ constexpr double kNoiseOfExactData = 1e-8;
 // gradient is.
 constexpr double kUndetermined = 3;
 constexpr double kSensitivityAccuracy = 1e-4;
-// A cycle over coarser spaces is a fifth of a solve.
+// Beyond these, another pole is cheaper.  By cycles over coarser spaces, its
+// own solves take a hundred and more of thin bodies and next to nu = 1/2.
 constexpr int kMostIterationsByFactor = 8;
-constexpr int kMostIterationsByCycle = 40;
+constexpr int kMostIterationsByCycle = 200;
 constexpr int kMostPoles = 10;
 
 class ReducedDescent {
@@ -72,9 +73,6 @@ class ReducedDescent {
   /// Returns the bounds of the variables, narrowed to where the model is
   /// trusted.
   std::vector<Bounds> TrustBounds() const;
-  /// Returns the most iterations of a solve next to the reduced model that are
-  /// cheaper than another pole.
-  int MostIterations();
   Eigen::MatrixXd WithoutHeld(const Eigen::MatrixXd& displacement) const {
     return displacement - misfit_.SmallStrainModel().HeldDisplacement();
   }
@@ -246,21 +244,12 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
   return forces;
 }
 
-int ReducedDescent::MostIterations() {
-  if (!misfit_.SmallStrainModel().IsRefined()) {
-    return kMostIterationsByFactor;
-  }
-  // Another pole would take as many for each of its solves: where a body is
-  // thin, these are more than a hundred.
-  const Work work = misfit_.SmallStrainModel().WorkDone();
-  return std::max(kMostIterationsByCycle,
-                  work.iterations / std::max(work.solves, 1));
-}
-
 bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
-  const int most = MostIterations();
+  const int most = misfit_.SmallStrainModel().IsRefined()
+                       ? kMostIterationsByCycle
+                       : kMostIterationsByFactor;
   const std::optional<int> iterations = SolveNearby(
       moduli_, forces, tolerances, most, misfit_.SmallStrainModel(), x);
   element_passes_ += 1 + iterations.value_or(most);
