@@ -10,8 +10,8 @@
 namespace elastimate {
 
 /// A world in which specimens are finer than the elements of a mesh: quadratic
-/// elements on the mesh whose tetrahedra are divided into eight, and these
-/// again into eight, `num_divisions` times.
+/// elements on the mesh after `num_divisions` divisions of each tetrahedron
+/// into eight.
 class FinerWorld {
  public:
   /// The scene has linear tetrahedra.

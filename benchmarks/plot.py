@@ -327,7 +327,7 @@ def speed_accuracy_points(path):
             for line, world in zip(panels, worlds):
                 for axes, scene in zip(line, scenes):
                     points = cells.get(world + scene)
-                    if points is None:  # What is left out is listed beside the table.
+                    if points is None:  # The .json beside the table lists what was left out.
                         axes.set_axis_off()
                         continue
                     draw_methods(axes, points, parameter)

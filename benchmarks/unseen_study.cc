@@ -206,6 +206,7 @@ constexpr BudgetPart kBudgetParts[] = {
     {"model", &ErrorBudget::model},
     {"outliers", &ErrorBudget::outliers},
     {"discretization", &ErrorBudget::discretization},
+    {"curvature", &ErrorBudget::curvature},
     {"law", &ErrorBudget::law},
 };
 

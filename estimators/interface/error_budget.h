@@ -24,8 +24,9 @@ struct ErrorBudget {
   ParameterErrors outliers;
   /// What the elements miss (Estimate::discretization_error).
   ParameterErrors discretization;
-  /// By values farther away that fit better than a parabola says
-  /// (CovarianceOfCurvature, CovarianceAcrossRange).
+  /// By values far from the estimate that fit better than a parabola through
+  /// the minimum says (CovarianceOfCurvature, CovarianceAcrossRange); empty
+  /// where that is not looked at.
   ParameterErrors curvature;
   /// The spread of the laws that fit alike.
   ParameterErrors law;

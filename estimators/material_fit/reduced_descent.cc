@@ -16,8 +16,8 @@
 namespace elastimate {
 namespace {
 
-// The step that is left at a minimum, and what the errors of u and of the
-// adjoint may change it by, each, in standard errors.
+// The step, in standard errors, below which a minimum is accepted, and the
+// error that each of the two solves (u, adjoint) may add to it.
 constexpr double kLargestStep = 0.05;
 constexpr double kStepAccuracy = 0.01;
 // The standard deviation of a row that counts as noise at least, where the norm
@@ -27,8 +27,9 @@ constexpr double kNoiseOfExactData = 1e-8;
 // gradient is.
 constexpr double kUndetermined = 3;
 constexpr double kSensitivityAccuracy = 1e-4;
-// Beyond these, another pole is cheaper.  By cycles over coarser spaces, its
-// own solves take a hundred and more of thin bodies and next to nu = 1/2.
+// A solve that takes more iterations ends, and a new pole is set.  With cycles
+// over coarser spaces, thin bodies and nu near 1/2 take more than a hundred
+// even at the pole itself, so that a new pole would not help.
 constexpr int kMostIterationsByFactor = 8;
 constexpr int kMostIterationsByCycle = 200;
 constexpr int kMostPoles = 10;
@@ -123,7 +124,7 @@ bool ReducedDescent::SetPoleOfAllModuli(const Eigen::VectorXd& x) {
 }
 
 std::optional<Eigen::VectorXd> ReducedDescent::SetTypicalPole() {
-  const std::optional<Eigen::VectorXd> x = TypicalStart(misfit_);
+  std::optional<Eigen::VectorXd> x = TypicalStart(misfit_);
   if (!x) {
     return std::nullopt;
   }

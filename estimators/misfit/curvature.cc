@@ -203,8 +203,8 @@ double LargestError(const FreeParameters& free, const Eigen::VectorXd& x,
          kStandardErrors;
 }
 
-// Returns the way from x to the farther end of the range of a ratio that is
-// next to the other one; zero where it is not, and for what has no range.
+// If a ratio is close to one end of its range, returns the way to the other
+// end; else zero.
 double WayAcrossRange(const FreeParameters& free, const Eigen::VectorXd& x,
                       Eigen::Index i) {
   constexpr double kNextToEnd = 0.02;
@@ -220,33 +220,35 @@ double WayAcrossRange(const FreeParameters& free, const Eigen::VectorXd& x,
   return x(i) - *bounds.lower < margin ? *bounds.upper - x(i) : 0;
 }
 
-// Moves x to the least square sum of the misfit where x(i) is as it is, and
-// returns that.  Ends early where that is more than `most`, or there is no
-// model; the square sum is infinite then.
+// Fits all variables but x(i), and returns the square sum: infinity where it
+// stays above `most`, or where the model cannot be solved.
 double LeastWithOneHeld(Eigen::Index i, double variance, double most,
                         DisplacementMisfit& misfit, Eigen::VectorXd& x) {
   constexpr int kMostSteps = 4;
   constexpr double kSettledGain = 0.1;  // Of the variance.
   const Eigen::VectorXd held = Eigen::VectorXd::Unit(x.size(), i);
-  double square_sum = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd next = x;
   for (int step = 0; step < kMostSteps; ++step) {
     Eigen::VectorXd rows;
     Eigen::MatrixXd sensitivities;
-    if (!misfit.Evaluate(x, &rows, &sensitivities)) {
-      return std::numeric_limits<double>::infinity();
+    if (!misfit.Evaluate(next, &rows, &sensitivities)) {
+      break;
     }
-    square_sum = SquaredNorm(rows);
+    const double square_sum = SquaredNorm(rows);
     const Least least = LeastSquareSum(
         rows, sensitivities, InnerProducts(sensitivities, sensitivities), held);
-    if (!(least.square_sum < most)) {
-      return std::numeric_limits<double>::infinity();
+    if (!(square_sum < best) || !(least.square_sum < most)) {
+      break;
     }
+    best = square_sum;
+    x = next;
     if (square_sum - least.square_sum < kSettledGain * variance) {
       break;
     }
-    x = Moved(misfit.Free(), x, least.change);
+    next = Moved(misfit.Free(), x, least.change);
   }
-  return square_sum;
+  return best;
 }
 
 }  // namespace
@@ -312,7 +314,7 @@ Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
     }
     const double least = SquaredNorm(rows);
     Eigen::VectorXd looked_at = minimum;
-    double largest = covariance(i, i);
+    double largest = covariance(i, i) + added(i, i);
     for (const double share : {1.0 / 32, 1.0 / 8, 1.0 / 2}) {
       looked_at(i) = x(i) + share * way;
       const double rise =

@@ -39,22 +39,22 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::VectorXd& beforehand,
                                       DisplacementMisfit& misfit);
 
-/// What a covariance of the variables understates at x where a ratio has ended
-/// next to an end of its range: coarse elements resist there ever more, so that
-/// the misfit has a narrow dip, whose width says nothing of how well the data
-/// know the ratio.
+/// What a covariance of the variables at x understates when a ratio ends close
+/// to an end of its range, as nu does near 1/2.  Coarse elements become too
+/// stiff there.  The misfit then has a narrow dip, whose width comes from the
+/// mesh and not from the data.
 ///
-/// For each such ratio, the square sum of the residual is looked at where the
-/// ratio is 1/32, 1/8 and 1/2 of its range farther inside, at the least over
-/// all other variables.  Where it is there chi^2 times the `variance` of a row
-/// above that at `minimum`, with chi^2 < 9, a parabola through both would mean
-/// an error of m / sqrt(max(chi^2, 1)) for the move m: what the covariance
-/// lacks to the largest of these is added along m.
+/// For each such ratio, the misfit is evaluated with the ratio moved from x by
+/// 1/32, 1/8 and 1/2 of the way to the other end, and all other variables
+/// fitted again.  Let m be the move, and chi^2 the rise of the square sum over
+/// that at `minimum`, in units of `variance`, that of a row.  Where chi^2 < 9,
+/// the ratio may be off by m / sqrt(max(chi^2, 1)).  If the covariance says
+/// less than the largest of these, the difference is added along m.
 ///
-/// `minimum` is that of `misfit`, the misfit whose minimum is x or that of the
-/// same measurement in a coarser space.  Costs nothing where no ratio is next
-/// to an end, one to four evaluations for each look else; no further look is
-/// made beyond chi^2 = 25.
+/// `minimum` is the minimum of `misfit`, whose elements may be coarser than
+/// those that x was fitted with.  Without a ratio near an end this costs
+/// nothing; else one evaluation, and one to four for each look.  Looks end
+/// where chi^2 is 25.
 Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
                                       const Eigen::MatrixXd& covariance,
                                       double variance,

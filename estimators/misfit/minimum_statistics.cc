@@ -405,12 +405,12 @@ void AddCurvature(const CurvedMisfit& curved, MinimumErrors& errors,
     return;
   }
   const FreeParameters& free = curved.misfit.Free();
-  Eigen::MatrixXd added =
-      CovarianceAcrossRange(errors.corrected, errors.total, errors.variance,
-                            curved.minimum, curved.misfit);
-  added += CovarianceOfCurvature(
-      curved.minimum, errors.total + added,
+  Eigen::MatrixXd added = CovarianceOfCurvature(
+      curved.minimum, errors.total,
       KnownBeforehand(free, errors.variables, errors.variance), curved.misfit);
+  added +=
+      CovarianceAcrossRange(errors.corrected, errors.total + added,
+                            errors.variance, curved.minimum, curved.misfit);
   errors.total += added;
   estimate.error_budget.curvature =
       ErrorsOfVariables(free, errors.corrected, added);

@@ -47,8 +47,8 @@ struct CurvedMisfit {
 ///     residual asks for it by more than chance (FindAxisRotation),
 ///   + the square of the distance to the minimum of another model of the
 ///     elements that explains the data about as well,
-///   + what these understate far from the minimum (CovarianceAcrossRange,
-///     CovarianceOfCurvature).
+///   + what the parts above miss because the misfit is no parabola
+///     (CovarianceOfCurvature, CovarianceAcrossRange).
 ///
 /// Bounds that are given are known beforehand (FreeParameters::ErrorsByBounds);
 /// that a minimum lies on one is not, so that its errors are those without it.

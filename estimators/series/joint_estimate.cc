@@ -415,6 +415,7 @@ void EnterMean(const Mean& mean, const Eigen::VectorXi& free, double load_error,
   estimate.error_budget.noise(free) = noise.diagonal().cwiseSqrt();
   const ErrorBudget& budget = estimate.error_budget;
   const Eigen::ArrayXd others = KnownSquares(budget.discretization, free) +
+                                KnownSquares(budget.curvature, free) +
                                 KnownSquares(budget.law, free) +
                                 KnownSquares(budget.kinematics, free) +
                                 KnownSquares(budget.section, free);
@@ -522,6 +523,7 @@ void EnterCommonErrors(const std::vector<UsedFrame>& frames,
         frames, cause, missing, free, Eigen::Index(estimate.parameters.size()));
   };
   part(&ErrorBudget::discretization, Missing::kUnknown);
+  part(&ErrorBudget::curvature, Missing::kZero);
   part(&ErrorBudget::law, Missing::kZero);
   part(&ErrorBudget::kinematics, Missing::kZero);
   part(&ErrorBudget::section, Missing::kZero);

@@ -21,7 +21,7 @@ export const mendsOfCauses = {
   model: "describe supports, loads and materials as they are in the experiment",
   outliers: "look at the few points with large residuals",
   discretization: "use a finer mesh",
-  curvature: "add a load case, or give what you know of nu",
+  curvature: "add a load case, or give a ratio that you know",
   law: "measure larger deformations, or name the law if you know it",
   kinematics: "use --estimator=auto, or smaller loads",
   section: "measure how far the outermost points are from the free edges, and give that margin",

@@ -88,7 +88,8 @@ TEST(JointEstimate, AveragesNoiseAlone) {
 }
 
 // The part of the variance that is no noise consists of nine parts.  Large
-// strains make four of them, and an unknown thickness makes one.
+// strains make four of them, and an unknown thickness and other values that fit
+// as well make one each.
 TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   const Eigen::Vector2d errors(0.03, 0.06);
   std::vector<FrameEstimate> frames(
@@ -96,6 +97,7 @@ TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   for (FrameEstimate& frame : frames) {
     frame.estimate.error_budget.kinematics = errors * 2 / 3;
     frame.estimate.error_budget.section = errors / 3;
+    frame.estimate.error_budget.curvature = errors / 3;
     frame.estimate.deformation = {0.02, 0.01};
   }
   frames[7].estimate.deformation = {0.03, 0.005};
@@ -103,8 +105,9 @@ TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   EXPECT_NEAR(joint.error_budget.kinematics(0), 0.02, 1e-9);
   EXPECT_NEAR(joint.error_budget.kinematics(1), 0.04, 1e-9);
   EXPECT_NEAR(joint.error_budget.section(0), 0.01, 1e-9);
-  EXPECT_NEAR(joint.error_budget.model(0), 0.02, 1e-9);
-  EXPECT_NEAR(joint.error_budget.model(1), 0.04, 1e-9);
+  EXPECT_NEAR(joint.error_budget.curvature(0), 0.01, 1e-9);
+  EXPECT_NEAR(joint.error_budget.model(0), 0.01 * std::sqrt(3), 1e-9);
+  EXPECT_NEAR(joint.error_budget.model(1), 0.02 * std::sqrt(3), 1e-9);
   EXPECT_EQ(joint.deformation.strain, 0.03);
   EXPECT_EQ(joint.deformation.rotation, 0.01);
   // Frames of small strains have no error of kinematics.  If half of the frames
