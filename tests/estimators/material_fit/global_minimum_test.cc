@@ -103,7 +103,7 @@ TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
 // 1/2 that is narrower than the errors.
 TEST(GlobalMinimumStatistics, ADipOfTheMeshIsNoKnowledge) {
   Scene scene = ShapeScene("dumbbell", "torsion");
-  testing::MeasureInCutWorld({kTrueYoungsModulus, 0}, scene);
+  testing::MeasureInCutWorld({5e4, 0}, scene);  // At small strains.
   AddNoise(0.1, 7, scene);
   const Estimate estimate = ReducedFe().Run(scene, {});
   const std::optional<double> error = estimate.PoissonRatioStandardError();
