@@ -24,7 +24,7 @@ namespace elastimate {
 ///      from them the gradient g of the full misfit at x,
 ///   3. where the Gauss-Newton step d = -G^+ g, G = S^T S, on the variables
 ///      that g does not hold on a bound, is below a twentieth of the standard
-///      error in every direction, sqrt(g^T G^+ g) < sigma / 50, x is the
+///      error in every direction, sqrt(g^T G^+ g) < sigma / 20, x is the
 ///      minimum: the end is kDone;
 ///   4. else u and lambda go into the bases, with which the reduced misfit and
 ///      its gradient are those of the full model at x, and 1 follows; or x
