@@ -67,8 +67,7 @@ DEFINE_string(compare, "",
               "further models: one_material, each_region, linear, or laws, "
               "separated by commas");
 DEFINE_string(solver, "automatic", "cholesky, multigrid, or automatic");
-DEFINE_int32(threads, 0,
-             "largest number of threads for the linear algebra; 0: all cores");
+DEFINE_int32(threads, 0, "largest number of threads; 0: all cores");
 DEFINE_uint64(seed, 1, "seed of the noise, from 0 on");
 DEFINE_string(json, "",
               "file for the report as JSON, or - for standard output");

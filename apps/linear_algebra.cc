@@ -8,8 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
+#include <future>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,6 +21,7 @@
 // without them.
 extern "C" {
 char* openblas_get_config();
+int openblas_get_num_threads();
 void openblas_set_num_threads(int num_threads);
 void dgemm_(const char* transpose_a, const char* transpose_b, const int* m,
             const int* n, const int* k, const double* alpha, const double* a,
@@ -151,6 +155,33 @@ void UseBlasKernelsOfProcessor(char** argv) {
 void SetThreads(int num_threads) {
   omp_set_num_threads(num_threads);
   openblas_set_num_threads(std::min(num_threads, LargestNumThreads()));
+}
+
+void ForBlocks(
+    std::size_t count,
+    const std::function<void(std::size_t begin, std::size_t end)>& work) {
+  const std::size_t num_blocks =
+      std::min(count, static_cast<std::size_t>(omp_get_max_threads()));
+  if (num_blocks < 2) {
+    return work(0, count);
+  }
+  const int num_blas_threads = openblas_get_num_threads();
+  openblas_set_num_threads(1);
+  std::vector<std::future<void>> blocks;
+  for (std::size_t i = 0; i < num_blocks; ++i) {
+    blocks.push_back(
+        std::async(std::launch::async, [&work, count, num_blocks, i] {
+          omp_set_num_threads(1);  // It is that of the calling thread.
+          work(count * i / num_blocks, count * (i + 1) / num_blocks);
+        }));
+  }
+  for (const std::future<void>& block : blocks) {
+    block.wait();
+  }
+  openblas_set_num_threads(num_blas_threads);
+  for (std::future<void>& block : blocks) {
+    block.get();
+  }
 }
 
 void ReserveBlasMemory() {

@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_APPS_LINEAR_ALGEBRA_H_
 #define ELASTIMATE_APPS_LINEAR_ALGEBRA_H_
 
+#include <cstddef>
+#include <functional>
 #include <string>
 
 namespace elastimate {
@@ -20,6 +22,14 @@ void UseBlasKernelsOfProcessor(char** argv);
 /// Sets the threads of OpenMP and those of the BLAS; of the latter, at most as
 /// many as fit into the memory that the process may take.
 void SetThreads(int num_threads);
+
+/// Calls `work(begin, end)` for blocks of `count` things that are about equally
+/// large, as many blocks as there are threads (SetThreads), and all at once.
+/// Products of matrices then take one thread in each.  An exception of a block
+/// comes back when all have ended; that of the first block, if of several.
+void ForBlocks(
+    std::size_t count,
+    const std::function<void(std::size_t begin, std::size_t end)>& work);
 
 /// Has the BLAS take the memory with which it works, for which it would wait
 /// forever when it is not there.  Throws std::runtime_error where the process

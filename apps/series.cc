@@ -1,5 +1,6 @@
 #include "apps/series.h"
 
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "apps/flags.h"
+#include "apps/linear_algebra.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/scene/camera.h"
 #include "elastimate/io/text/input_error.h"
@@ -37,22 +39,24 @@ void Prepare(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// Checks the first frame: what is wrong with each frame is wrong with the
+// Checks the first valid frame: what is wrong with each frame is wrong with the
 // command.
 void CheckFirst(const Estimator& estimator, const Scene& scene,
-                const LoadCase& frame, const FrameSeries& series,
-                const EstimatorOptions& options) {
+                const FrameSeries& series, const EstimatorOptions& options) {
   Scene of_frame = scene;
-  of_frame.load_cases = {frame};
-  try {
-    ValidateScene(of_frame);
-  } catch (const std::invalid_argument&) {
+  for (std::size_t i = 0; i < series.files.size(); ++i) {
+    try {
+      of_frame.load_cases = {ReadFrame(series, i)};
+      ValidateScene(of_frame);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    const std::string why = estimator.WhyUnsupported(of_frame, options);
+    if (!why.empty()) {
+      ThrowInputError(series.files.front(),
+                      std::string(estimator.Name()) + ": " + why);
+    }
     return;
-  }
-  const std::string why = estimator.WhyUnsupported(of_frame, options);
-  if (!why.empty()) {
-    ThrowInputError(series.files.front(),
-                    std::string(estimator.Name()) + ": " + why);
   }
 }
 
@@ -88,7 +92,7 @@ Eigen::VectorXd ResidualOf(const Scene& scene, const LoadCase& frame,
 // Compares the components that both frames have.
 void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
                  FrameEstimate& frame) {
-  if (before.size() == 0 || before.size() != residual.size()) {
+  if (before.size() != residual.size()) {
     return;
   }
   const Eigen::Array<bool, Eigen::Dynamic, 1> is_in_both =
@@ -99,6 +103,21 @@ void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
   if (size > 0) {
     frame.likeness = (a * b).sum() / size;
     frame.num_alike = is_in_both.count();
+  }
+}
+
+// Compares each frame that has a residual with the last one before it that has.
+void CompareNeighbours(const std::vector<Eigen::VectorXd>& residuals,
+                       std::vector<FrameEstimate>& frames) {
+  const Eigen::VectorXd* before = nullptr;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (residuals[i].size() == 0) {
+      continue;
+    }
+    if (before != nullptr) {
+      CompareWith(*before, residuals[i], frames[i]);
+    }
+    before = &residuals[i];
   }
 }
 
@@ -116,37 +135,36 @@ std::vector<FrameEstimate> EstimateFrames(
     const Estimator& estimator, const Scene& scene, const FrameSeries& series,
     const EstimatorOptions& options,
     const std::function<void(const std::string&)>& progress) {
-  std::vector<FrameEstimate> estimates;
-  std::optional<PreparedEstimator> prepared;
-  Eigen::VectorXd residual_before;
-  for (std::size_t i = 0; i < series.files.size(); ++i) {
-    progress("frame " + std::to_string(i + 1) + " of " +
-             std::to_string(series.files.size()));
-    FrameEstimate estimate = {series.Load(i), {}};
-    std::optional<LoadCase> frame;
-    try {
-      frame = ReadFrame(series, i);
-    } catch (const std::invalid_argument& error) {
-      estimate.estimate = NotRun(error.what());
-    }
-    if (frame && !prepared) {
-      CheckFirst(estimator, scene, *frame, series, options);
-    }
-    if (frame) {
+  CheckFirst(estimator, scene, series, options);
+  const std::size_t num_frames = series.files.size();
+  std::vector<FrameEstimate> frames(num_frames);
+  std::vector<Eigen::VectorXd> residuals(num_frames);
+  std::atomic<std::size_t> num_started = 0;
+  const auto estimate_block = [&](std::size_t begin, std::size_t end) {
+    std::optional<PreparedEstimator> prepared;
+    for (std::size_t i = begin; i < end; ++i) {
+      progress("frame " + std::to_string(++num_started) + " of " +
+               std::to_string(num_frames));
+      frames[i].load = series.Load(i);
       try {
-        Prepare(estimator, scene, *frame, options, prepared);
-        estimate.estimate = prepared->RunLoadCases({*frame});
-        const Eigen::VectorXd residual =
-            ResidualOf(scene, *frame, estimate.estimate);
-        CompareWith(residual_before, residual, estimate);
-        residual_before = residual;
+        const LoadCase frame = ReadFrame(series, i);
+        Prepare(estimator, scene, frame, options, prepared);
+        frames[i].estimate = prepared->RunLoadCases({frame});
+        residuals[i] = ResidualOf(scene, frame, frames[i].estimate);
       } catch (const std::invalid_argument& error) {
-        estimate.estimate = NotRun(error.what());
+        frames[i].estimate = NotRun(error.what());
       }
     }
-    estimates.push_back(std::move(estimate));
+  };
+  // On larger meshes a fit uses several threads itself, and needs much memory.
+  constexpr Eigen::Index kMostNodes = 20000;
+  if (scene.mesh.NumNodes() > kMostNodes) {
+    estimate_block(0, num_frames);
+  } else {
+    ForBlocks(num_frames, estimate_block);
   }
-  return estimates;
+  CompareNeighbours(residuals, frames);
+  return frames;
 }
 
 }  // namespace elastimate

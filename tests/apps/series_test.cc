@@ -161,6 +161,30 @@ TEST_F(Series, IsATableOfFramesAndTheirJointEstimate) {
   EXPECT_THAT(rows[8], HasSubstr("joint,,,ok,"));
 }
 
+TEST_F(Series, IsTheSameWithAnyNumberOfThreads) {
+  testing::WriteText(folder_ / "frame_7.csv", "x,y,ux,uy\n1,2,abc,4\n");
+  const auto estimate = [&](const std::string& threads) {
+    return Succeed(
+               "estimate scene.json --estimator=auto --series=series.csv "
+               "--json=- --threads=" +
+               threads)
+        .Json();
+  };
+  const nlohmann::json one = estimate("1");
+  const std::vector<std::string> rows_of_one = Rows();
+  // More threads than frames.
+  const nlohmann::json several = estimate("9");
+  const std::vector<std::string> rows = Rows();
+  ASSERT_EQ(rows.size(), rows_of_one.size());
+  EXPECT_EQ(rows[3], rows_of_one[3]);
+  EXPECT_EQ(one["series"]["used"], several["series"]["used"]);
+  for (const char* value : {"youngs_modulus", "poisson_ratio"}) {
+    const double error = one["standard_error"][value];
+    EXPECT_NEAR(one[value], several[value], 1e-3 * error) << value;
+    EXPECT_NEAR(error, several["standard_error"][value], 1e-3 * error) << value;
+  }
+}
+
 TEST_F(Series, TellsThatTheModulusDependsOnTheLoad) {
   WriteFrames(0.2);
   const std::string output =
