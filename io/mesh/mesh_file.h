@@ -126,7 +126,7 @@ inline constexpr char kSupportedElements[] =
 
 /// Lists the extensions of mesh files, for messages.
 inline constexpr char kMeshExtensions[] =
-    ".vtu, .vtk, .msh, .mesh, .unv, .bdf, .inp or .feb";
+    ".vtu, .pvtu, .vtk, .msh, .mesh, .unv, .bdf, .inp or .feb";
 
 /// Returns ".vtu" for "a.vtu" and for "A.VTU", but ".Vtu" for "a.Vtu": Gmsh
 /// tells its formats by names in all small or all capital letters, and runs a

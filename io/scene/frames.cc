@@ -33,7 +33,7 @@ bool IsPattern(const std::string& name) {
 
 bool IsVtkFile(const std::string& name) {
   const std::string extension = FileExtension(name);
-  return extension == ".vtu" || extension == ".vtk";
+  return extension == ".vtu" || extension == ".pvtu" || extension == ".vtk";
 }
 
 // Returns the names of the files of a series of ParaView (.pvd), relative to

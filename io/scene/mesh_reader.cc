@@ -9,6 +9,7 @@
 #include "elastimate/io/mesh/mesh_file_check.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/input_file.h"
+#include "elastimate/io/vtk/pvtu_mesh.h"
 #include "elastimate/io/vtk/vtk_mesh.h"
 
 namespace elastimate {
@@ -40,6 +41,8 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
   MeshFile mesh;
   if (extension == ".vtu") {
     mesh = ReadVtuMesh(path);
+  } else if (extension == ".pvtu") {
+    mesh = ReadPvtuMesh(path);
   } else if (extension == ".vtk") {
     mesh = ReadLegacyVtkMesh(path);
   } else if (std::set<std::string>{".msh", ".mesh", ".unv", ".bdf"}.count(
