@@ -123,6 +123,9 @@ SingularValueDecomposition DecomposeSingularValues(const Eigen::MatrixXd& a) {
 }
 
 SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a) {
+  if (a.size() == 0) {  // Eigen reads beyond it.
+    return {Eigen::VectorXd(0), a};
+  }
   if (a.rows() >= kLargeSymmetric && a.allFinite()) {
     SymmetricEigenDecomposition decomposition = DecomposeByLapack(a);
     if (decomposition.values.size() > 0) {
@@ -135,6 +138,9 @@ SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a) {
 
 SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a,
                                                const Eigen::MatrixXd& b) {
+  if (a.size() == 0) {
+    return {Eigen::VectorXd(0), a};
+  }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, b);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }

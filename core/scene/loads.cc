@@ -125,10 +125,24 @@ struct Scaling {
 
 void AddLoads(const Mesh& mesh, const std::vector<Load>& loads,
               Eigen::Ref<Eigen::MatrixXd> force) {
-  LoadAssembler assembler(mesh, force);
-  for (const Load& load : loads) {
-    std::visit(assembler, load);
+  if (loads.size() == 1) {
+    std::visit(LoadAssembler(mesh, force), loads[0]);
+    return;
   }
+  // What loads that cancel leave of each other is rounding, and no load.
+  constexpr double kRounding = 1e-13;
+  Eigen::ArrayXXd sizes = Eigen::ArrayXXd::Zero(force.rows(), force.cols());
+  Eigen::MatrixXd own(force.rows(), force.cols());
+  for (const Load& load : loads) {
+    own.setZero();
+    std::visit(LoadAssembler(mesh, own), load);
+    force += own;
+    sizes += own.array().abs();
+  }
+  force = (force.array().abs() > kRounding * sizes)
+              .select(force.array(), 0.0)
+              .matrix()
+              .eval();
 }
 
 }  // namespace

@@ -23,6 +23,12 @@ TEST(SolveLeastSquares, LeavesOutColumnsThatAreNearlyDependent) {
 }
 
 // 120 columns are enough for LAPACK.
+TEST(DecomposeSymmetric, TakesAMatrixWithoutRows) {
+  const Eigen::MatrixXd none(0, 0);
+  EXPECT_EQ(DecomposeSymmetric(none).values.size(), 0);
+  EXPECT_EQ(DecomposeSymmetric(none, none).vectors.size(), 0);
+}
+
 TEST(DecomposeSymmetric, DecomposesLargeMatrices) {
   const Eigen::MatrixXd a = Eigen::MatrixXd::Random(120, 150);
   const Eigen::MatrixXd gram = a * a.transpose();

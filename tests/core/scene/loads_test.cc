@@ -94,6 +94,15 @@ TEST_F(LoadedBox, TractionIsAreaTimesTractionAtTheMiddleOfTheFace) {
   EXPECT_NEAR((Moment(mesh_, force) - moment).norm(), 0, kTolerance * 100);
 }
 
+TEST_F(LoadedBox, LoadsThatCancelLeaveNothing) {
+  const Eigen::MatrixXi facets = FacetsAt(mesh_, 0, 2);
+  const Eigen::Vector3d traction(0.1, -0.7, 0.3);
+  EXPECT_TRUE(AssembleLoads(mesh_, {Traction{facets, traction},
+                                    Traction{facets, -traction / 3},
+                                    Traction{facets, -traction * 2 / 3}})
+                  .isZero(0));
+}
+
 TEST_F(LoadedBox, TractionDoesNotDependOnTheOrderOfFacetNodes) {
   Eigen::MatrixXi facets = FacetsAt(mesh_, 2, 4);
   const Eigen::MatrixXd force =
