@@ -1,11 +1,13 @@
 #include "elastimate/estimators/interface/input_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 
@@ -30,7 +32,7 @@ bool IsLoaded(const Scene& scene, Eigen::Index k) {
 // What one load case measured at the free degrees of freedom.
 struct MeasurementSummary {
   bool any_observed = false;
-  bool any_displacement = false;
+  double largest_displacement = 0;
   double free_square_sum = 0;
   double held_deviation_square_sum = 0;
 };
@@ -51,7 +53,8 @@ MeasurementSummary Summarize(const Scene& scene, Eigen::Index k) {
         summary.held_deviation_square_sum += deviation * deviation;
       } else {
         summary.any_observed = true;
-        summary.any_displacement |= q != 0;
+        summary.largest_displacement =
+            std::max(summary.largest_displacement, std::abs(q));
         summary.free_square_sum += q * q;
       }
     }
@@ -59,7 +62,8 @@ MeasurementSummary Summarize(const Scene& scene, Eigen::Index k) {
   summary.any_observed |= AreFreePointsMeasured(scene, k);
   for (const double q : load_case.points.displacement.reshaped()) {
     if (!std::isnan(q)) {
-      summary.any_displacement |= q != 0;
+      summary.largest_displacement =
+          std::max(summary.largest_displacement, std::abs(q));
       summary.free_square_sum += q * q;
     }
   }
@@ -105,11 +109,20 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
           "; measure free nodes, or leave what was measured out of the "
           "supports");
     }
-    if (!summary.any_displacement) {
+    if (summary.largest_displacement == 0) {
       throw std::invalid_argument(
           "the measured displacement of " + name +
           " is zero at every free node, so that nothing can be estimated; "
           "check the columns or arrays that it was read from");
+    }
+    if (load_case.noise_sd &&
+        *load_case.noise_sd > summary.largest_displacement) {
+      throw std::invalid_argument(
+          "the standard deviation of the noise of " + name + ", " +
+          NumberText(*load_case.noise_sd) +
+          ", is larger than each measured displacement (at most " +
+          NumberText(summary.largest_displacement) +
+          "), as if nothing was measured; check its unit");
     }
     // Measurement noise on held nodes is no contradiction; a motion is.
     if (summary.held_deviation_square_sum >

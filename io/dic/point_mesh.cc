@@ -355,6 +355,15 @@ double DefaultMaxEdge(const Eigen::Matrix2Xd& positions,
   return kGap * *most;
 }
 
+bool AreOnALine(const Eigen::Matrix2Xd& positions) {
+  const Eigen::Matrix2Xd centred =
+      positions.colwise() - positions.rowwise().mean();
+  const Eigen::Matrix2d moments = centred * centred.transpose();
+  constexpr double kRounding = 1e-12;
+  return !(moments.determinant() >
+           kRounding * moments.trace() * moments.trace());
+}
+
 // Numbers the nodes that elements use.
 PointMesh Number(ElementKind kind, const Elements& elements) {
   PointMesh mesh;
@@ -412,6 +421,11 @@ PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
   if (positions.cols() < 3) {
     throw std::invalid_argument(
         "there are fewer than three points, too few for a mesh; give more");
+  }
+  if (AreOnALine(positions)) {
+    throw std::invalid_argument(
+        "all points lie on a line, of which there is no mesh; check the "
+        "columns of the positions");
   }
   const Elements quadrilaterals = QuadrilateralsOf(positions);
   if (!quadrilaterals.empty()) {

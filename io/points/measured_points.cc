@@ -69,9 +69,22 @@ double RoundedUp(double length) {
   return unit * std::ceil(length * (1 + 1e-9) / unit);
 }
 
+// Points that lie farther off than this part of the mesh's diagonal are not
+// measured on it.
+constexpr double kLargestPart = 0.02;
+
 void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     const Eigen::VectorXd& distance, double tolerance,
-                    std::vector<std::string>& notices) {
+                    double diagonal, std::vector<std::string>& notices) {
+  const double needed = distance.size() > 0 ? distance.maxCoeff() : 0;
+  const std::string mend =
+      needed > kLargestPart * diagonal
+          ? "check that the points have the origin, the axes (with their "
+            "signs) and the \"unit\" of the mesh, and are positions before the load"
+          : "use the mesh's axes and its \"unit\", leave it out, or give the "
+            "\"tolerance\" " +
+                LengthText(RoundedUp(needed)) +
+                ", which takes all points of the file";
   for (Eigen::Index point = 0; point < distance.size(); ++point) {
     if (distance(point) > tolerance) {
       ThrowInputError(
@@ -79,11 +92,7 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     PositionText(file.positions.col(point)) + " lies " +
                     LengthText(distance(point)) +
                     " outside the mesh, more than the tolerance of " +
-                    LengthText(tolerance) +
-                    "; use the mesh's axes and its \"unit\", leave it out, or "
-                    "give the \"tolerance\" " +
-                    LengthText(RoundedUp(distance.maxCoeff())) +
-                    ", which takes all points of the file");
+                    LengthText(tolerance) + "; " + mend);
     }
   }
   const Eigen::Index num_outside = (distance.array() > 0).count();
@@ -165,7 +174,8 @@ PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
     notices.insert(notices.end(), file.notices.begin(), file.notices.end());
     const LocatedPoints located = locator.Locate(file.positions);
     CheckSpan(path, file, mesh, options);
-    CheckDistances(path, file, located.distance, tolerance, notices);
+    CheckDistances(path, file, located.distance, tolerance,
+                   DiagonalOf(mesh.nodes), notices);
     AppendPoints(file, located.points, all);
     lines.push_back({path, file.lines});
     if (all.noise_sd.cols() != 0 && all.noise_sd.cols() != all.points.Size()) {

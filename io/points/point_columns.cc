@@ -222,6 +222,17 @@ void AppendColumns(const CsvTable& table, const std::vector<Matches>& meanings,
   }
 }
 
+void CheckDifferent(const CsvTable& table, std::vector<std::size_t> columns) {
+  std::sort(columns.begin(), columns.end());
+  const auto same = std::adjacent_find(columns.begin(), columns.end());
+  if (same != columns.end()) {
+    ThrowInputError(table.path, "the column '" +
+                                    Printable(table.titles[*same].text) +
+                                    "' is named twice as \"columns\"; name "
+                                    "another one for each component");
+  }
+}
+
 [[noreturn]] void ThrowUnknown(const CsvTable& table,
                                const TableOptions& options, int dimension) {
   for (const std::string& name : options.columns) {
@@ -265,6 +276,7 @@ CsvTable ReadTableOfPoints(const std::filesystem::path& path,
   columns.format = found->format;
   AppendColumns(table, found->positions, dimension, columns.columns);
   AppendColumns(table, found->displacements, dimension, columns.columns);
+  CheckDifferent(table, columns.columns);
   if (found->of_program != nullptr) {
     columns.is_in_pixels = found->of_program->is_in_pixels;
   }

@@ -95,7 +95,7 @@ std::vector<FileLines> MeasurementReader::Read(
     return {
         ReadNumberedNodes(displacement.At("nodes"), mesh_, load_case, notices)};
   }
-  displacement.CheckKeys({"file", "array"});
+  displacement.CheckKeys({"points", "nodes", "file", "array"});
   MarkObserved(mesh_, load_case);
   load_case.displacement = ReadNodeField(
       displacement, mesh_,

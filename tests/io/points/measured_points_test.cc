@@ -99,19 +99,24 @@ TEST_F(MeasuredPointsTest, MayComeFromSeveralFiles) {
 
 TEST_F(MeasuredPointsTest, AreRefusedOutside) {
   folder_.Write("points.csv",
-                "x,y,z,ux,uy,uz\n.5,.5,.5,0,0,1\n.5,.5,1.25,0,0,1\n"
-                ".5,.5,1.31234,0,0,1\n");
+                "x,y,z,ux,uy,uz\n.5,.5,.5,0,0,1\n.5,.5,1.02,0,0,1\n"
+                ".5,.5,1.031234,0,0,1\n");
   EXPECT_THROWS_WITH(
       Read(kPointsDocument),
-      "points.csv: line 3: the point \\(0.5, 0.5, 1.25\\) lies 0.25 outside "
+      "points.csv: line 3: the point \\(0.5, 0.5, 1.02\\) lies 0.02 outside "
       "the mesh, more than the tolerance of 0.00173; .* or give the "
-      ".tolerance. 0.313, which takes all points of the file");
+      ".tolerance. 0.0313, which takes all points of the file");
   const SceneReading reading =
       Read(Replaced(kPointsDocument, R"("points.csv")",
-                    R"("points.csv", "tolerance": 0.313)"));
+                    R"("points.csv", "tolerance": 0.0313)"));
   ASSERT_EQ(reading.notices.size(), 1U);
   EXPECT_THAT(reading.notices[0],
-              HasSubstr("2 of 3 points lie outside the mesh, up to 0.312"));
+              HasSubstr("2 of 3 points lie outside the mesh, up to 0.0312"));
+  // A tolerance does not mend points that were measured somewhere else.
+  folder_.Write("points.csv", "x,y,z,ux,uy,uz\n.5,.5,-.5,0,0,1\n");
+  EXPECT_THROWS_WITH(Read(kPointsDocument),
+                     "line 2: .* check that the points have the origin, the "
+                     "axes");
 }
 
 // A mesh file does not say which unit it has.

@@ -123,6 +123,14 @@ TEST_F(PointsFileTest, ConvertsByTheRowOfUnitsAndTheColumnsOfTheScene) {
   EXPECT_EQ(ReadPointsFile(path, 2, options).displacement, displacement);
 }
 
+TEST_F(PointsFileTest, RefusesAColumnThatIsNamedTwice) {
+  TableOptions options;
+  options.columns = {"a", "b", "c", "b"};
+  const auto path = folder_.Write("points.csv", "a,b,c,d\n1,2,3,4\n");
+  EXPECT_THROWS_WITH(ReadPointsFile(path, 2, options),
+                     "points.csv: the column 'b' is named twice");
+}
+
 TEST_F(PointsFileTest, ConvertsToTheUnitOfTheScene) {
   TableOptions options;
   options.unit = LengthUnitOf("m");
