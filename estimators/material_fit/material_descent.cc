@@ -31,6 +31,7 @@ struct Start {
 // as the coarse spaces of multigrid for one nu serve all smaller ones, and so
 // the fit that follows.
 std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
+                                           const std::vector<double>& ratios,
                                            DisplacementMisfit& misfit) {
   std::vector<Start> starts;
   const FreeParameters& free = misfit.Free();
@@ -38,7 +39,7 @@ std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
     return starts;
   }
   const Bounds& range = free.VariableBounds()[1];
-  for (const double nu : {0.499, 0.495, 0.48, 0.45, 0.3, 0.0, -0.5, -0.85}) {
+  for (const double nu : ratios) {
     const double within = std::clamp(nu, *range.lower, *range.upper);
     if (!starts.empty() && starts.back().variables(1) == within) {
       continue;
@@ -54,19 +55,16 @@ std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
   return starts;
 }
 
+const std::vector<double> kRatios = {0.499, 0.495, 0.48, 0.45,
+                                     0.3,   0.0,   -0.5, -0.85};
+
 // From where descents lead to every minimum that shows.
-std::vector<std::optional<Eigen::VectorXd>> StartsOf(
-    const Scene& scene, DisplacementMisfit& misfit) {
-  const std::vector<Start> all =
-      StartsOverPoissonRatios(scene, Loss::kNone, misfit);
-  if (all.empty()) {
-    return {TypicalStart(misfit)};
-  }
-  std::vector<std::optional<Eigen::VectorXd>> starts;
+std::vector<Eigen::VectorXd> LeastOf(const std::vector<Start>& all) {
+  std::vector<Eigen::VectorXd> starts;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(i > 0 && all[i - 1].cost < all[i].cost) &&
         !(i + 1 < all.size() && all[i + 1].cost < all[i].cost)) {
-      starts.emplace_back(all[i].variables);
+      starts.push_back(all[i].variables);
     }
   }
   return starts;
@@ -91,12 +89,19 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
 std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
                                            DisplacementMisfit& misfit) {
   const std::vector<Start> starts =
-      StartsOverPoissonRatios(scene, loss, misfit);
+      StartsOverPoissonRatios(scene, loss, kRatios, misfit);
   const auto best = std::min_element(
       starts.begin(), starts.end(),
       [](const Start& a, const Start& b) { return a.cost < b.cost; });
   return best == starts.end() ? std::nullopt
                               : std::optional<Eigen::VectorXd>(best->variables);
+}
+
+std::vector<Eigen::VectorXd> StartsAcrossRange(const Scene& scene,
+                                               DisplacementMisfit& misfit) {
+  return LeastOf(StartsOverPoissonRatios(
+      scene, Loss::kNone,
+      {0.499, 0.48, 0.4, 0.3, 0.15, 0, -0.15, -0.3, -0.5, -0.7, -0.9}, misfit));
 }
 
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
@@ -120,7 +125,14 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           const EstimatorOptions& options,
                                           DisplacementMisfit& misfit,
                                           Estimate& estimate) {
-  std::vector<std::optional<Eigen::VectorXd>> starts = StartsOf(scene, misfit);
+  std::vector<std::optional<Eigen::VectorXd>> starts;
+  for (const Eigen::VectorXd& start :
+       LeastOf(StartsOverPoissonRatios(scene, Loss::kNone, kRatios, misfit))) {
+    starts.emplace_back(start);
+  }
+  if (starts.empty()) {
+    starts.push_back(TypicalStart(misfit));
+  }
   starts.push_back(VirtualFieldsStart(scene, options, estimate));
   // The costs of descents to the same minimum differ by rounding, which must
   // not choose between them.
@@ -131,7 +143,7 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
     // there.
     if (start && (!best || ExplainsAnything(*start, misfit))) {
       BoundedMinimum minimum =
-          DescendFrom(options, *start, Distance::kFar, misfit);
+          DescendFrom(options, *start, Distance::kFar, misfit, best);
       if (!best || minimum.cost < (1 - kSame) * best->cost) {
         best = minimum;
       }

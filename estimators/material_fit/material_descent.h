@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -26,6 +27,12 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
 /// could turn a least-squares fit around, say little.  Empty for others.
 std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
                                            DisplacementMisfit& misfit);
+
+/// The variables, over the range of Poisson's ratio of one isotropic material,
+/// from which descents lead to each minimum that 11 ratios show; empty for
+/// others.
+std::vector<Eigen::VectorXd> StartsAcrossRange(const Scene& scene,
+                                               DisplacementMisfit& misfit);
 
 /// The variables that virtual-fields comes to; empty where it does not take the
 /// scene, or they are not physical.  Adds its work to the estimate.

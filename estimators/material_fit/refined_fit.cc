@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/materials/material.h"
 #include "elastimate/core/mesh/finer_nodes.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/finer_scene.h"
@@ -103,6 +104,8 @@ class Refinement {
 
   Chain FitQuadratic(const Scene& quadratic,
                      const std::optional<Eigen::VectorXd>& start);
+  /// Looks for a better minimum than the one that coarser elements led to.
+  void LookForBetterMinimum(const MaterialFit& coarser, SpaceFit& fit) const;
   void LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
                 const std::vector<const Scene*>& coarser, Chain& chain);
   static Chain MeanOf(Chain held, Chain free);
@@ -157,6 +160,12 @@ class Refinement {
            static_cast<double>(linear_->NumRows()) *
                    std::log(linear_->SquareSum() / least_of_quadratic_) <
                kLogLikelihoodRatio;
+  }
+  /// Whether linear elements, too, leave so much that the model is wrong.
+  bool LeavesSmoothPart(const Estimate& finest) const {
+    return finest.IsRefusedFor(FindingCode::kSmoothResidual) &&
+           linear_->SquareSum() >
+               kLimits.large_residual * kLimits.large_residual;
   }
   /// Whether bounds are given, which a fit may end on that would go on without.
   bool HasBounds() const {
@@ -222,6 +231,25 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
   }
 }
 
+// Coarse elements that lock end far off, or next to an end of the range, from
+// where finer ones may descend to another minimum than the best one.
+bool MayLeadAstray(const MaterialFit& coarser, SpaceFit& fit) {
+  constexpr double kFarOff = 0.05;  // Of a ratio.
+  const Eigen::VectorXd& from = coarser.minimum->variables;
+  const Eigen::VectorXd& to = fit.Fit().minimum->variables;
+  return AwayFromEnds(fit.Misfit().Free(), to) != to ||
+         std::abs(from.tail<1>()(0) - to.tail<1>()(0)) > kFarOff;
+}
+
+void Refinement::LookForBetterMinimum(const MaterialFit& coarser,
+                                      SpaceFit& fit) const {
+  if (coarser.minimum && fit.Fit().minimum && options_.loss == Loss::kNone &&
+      !HasUnknownMotion(scene_) && IsOneIsotropicMaterial(scene_.materials) &&
+      !fit.Misfit().HasLargeStrains() && MayLeadAstray(coarser, fit)) {
+    fit.MinimizeAcrossRange(descent_);
+  }
+}
+
 Refinement::Chain Refinement::FitQuadratic(
     const Scene& quadratic, const std::optional<Eigen::VectorXd>& start) {
   Chain chain;
@@ -231,6 +259,9 @@ Refinement::Chain Refinement::FitQuadratic(
     coarser.push_back(&scene_);
   }
   chain.quadratic = MinimizeOn(quadratic, start, coarser, linear_.get());
+  if (linear_) {
+    LookForBetterMinimum(linear_->Fit(), *chain.quadratic);
+  }
   chain.work = chain.quadratic->Fit().estimate.work;
   if (!chain.quadratic->Fit().minimum) {
     return chain;
@@ -256,6 +287,7 @@ Refinement::Chain Refinement::FitQuadratic(
     }
     std::unique_ptr<SpaceFit> divided = MinimizeOn(
         FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser, &fit);
+    LookForBetterMinimum(fit.Fit(), *divided);
     chain.work = chain.work + divided->Fit().estimate.work;
     if (divided->Fit().minimum) {
       chain.coarser = &fit;
@@ -348,7 +380,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
   EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);
   if (may_be_of_another_law) {
     fit.estimate.Add(ComputedByLinearElements(Severity::kWarning));
-  } else if (is_of_linear_elements) {
+  } else if (is_of_linear_elements && !LeavesSmoothPart(fit.estimate)) {
     // What else there is to say follows from that.
     fit.estimate.findings.clear();
     fit.estimate.Fail(ComputedByLinearElements(Severity::kError));

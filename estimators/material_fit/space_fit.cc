@@ -282,6 +282,20 @@ void SpaceFit::Minimize(Descent descent,
   estimate.work = estimate.work + (WorkDone() - before);
 }
 
+void SpaceFit::MinimizeAcrossRange(Descent descent) {
+  MaterialFit best = fit_;
+  const Work of_found = fit_.estimate.work;
+  const Work before = WorkDone();
+  for (const Eigen::VectorXd& start : StartsAcrossRange(scene_, misfit_)) {
+    Minimize(descent, start);
+    if (fit_.minimum && fit_.minimum->cost < best.minimum->cost) {
+      best = fit_;
+    }
+  }
+  fit_ = best;
+  fit_.estimate.work = of_found + (WorkDone() - before);
+}
+
 void SpaceFit::EnterMinimum() {
   EnterParameters(scene_, misfit_.Free(),
                   misfit_.Free().ParametersAt(fit_.minimum->variables),

@@ -3,11 +3,11 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/estimators/misfit/least_square_sum.h"
 
 namespace elastimate {
 namespace {
@@ -41,49 +41,6 @@ Eigen::MatrixXd ScaledJacobian(const FreeParameters& free,
     }
   }
   return jacobian;
-}
-
-// Moves x as far as the bounds allow.
-Eigen::VectorXd Moved(const FreeParameters& free, const Eigen::VectorXd& x,
-                      const Eigen::VectorXd& move) {
-  Eigen::VectorXd moved = x + move;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const Bounds& bounds = free.VariableBounds()[i];
-    // Behind a bound there is no model, and none on that of nu = 1/2.
-    constexpr double kOfTheWay = 0.9;
-    if (bounds.lower && moved(i) < *bounds.lower) {
-      moved(i) = x(i) + kOfTheWay * (*bounds.lower - x(i));
-    }
-    if (bounds.upper && moved(i) > *bounds.upper) {
-      moved(i) = x(i) + kOfTheWay * (*bounds.upper - x(i));
-    }
-  }
-  return moved;
-}
-
-// The least square sum near rows r + S d where a^T d = 0, and d there.
-struct Least {
-  double square_sum;
-  Eigen::VectorXd change;
-};
-
-Least LeastSquareSum(const Eigen::VectorXd& rows,
-                     const Eigen::MatrixXd& sensitivities,
-                     const Eigen::MatrixXd& information,
-                     const Eigen::VectorXd& a) {
-  const double square_sum = SquaredNorm(rows);
-  if (a.size() == 1) {
-    return {square_sum, Eigen::VectorXd::Zero(1)};
-  }
-  const Eigen::MatrixXd others =
-      DecomposeSingularValues(a.transpose()).v.rightCols(a.size() - 1);
-  const Eigen::VectorXd gradient =
-      others.transpose() * InnerProducts(sensitivities, rows);
-  const Eigen::VectorXd step =
-      -Inverse(others.transpose() * information * others) * gradient;
-  // No more than one step is trusted to gain.
-  const double gain = -gradient.dot(step);
-  return {square_sum - std::clamp(gain, 0.0, square_sum), others * step};
 }
 
 Eigen::MatrixXd InformationMatrix(const Eigen::MatrixXd& sensitivities,
@@ -203,54 +160,6 @@ double LargestError(const FreeParameters& free, const Eigen::VectorXd& x,
          kStandardErrors;
 }
 
-// If a ratio is close to one end of its range, returns the way to the other
-// end; else zero.
-double WayAcrossRange(const FreeParameters& free, const Eigen::VectorXd& x,
-                      Eigen::Index i) {
-  constexpr double kNextToEnd = 0.02;
-  const Bounds& bounds = free.VariableBounds()[i];
-  if (!bounds.lower || !bounds.upper ||
-      free.Free(i).law_parameter->is_modulus) {
-    return 0;
-  }
-  const double margin = kNextToEnd * (*bounds.upper - *bounds.lower);
-  if (*bounds.upper - x(i) < margin) {
-    return *bounds.lower - x(i);
-  }
-  return x(i) - *bounds.lower < margin ? *bounds.upper - x(i) : 0;
-}
-
-// Fits all variables but x(i), and returns the square sum: infinity where it
-// stays above `most`, or where the model cannot be solved.
-double LeastWithOneHeld(Eigen::Index i, double variance, double most,
-                        DisplacementMisfit& misfit, Eigen::VectorXd& x) {
-  constexpr int kMostSteps = 4;
-  constexpr double kSettledGain = 0.1;  // Of the variance.
-  const Eigen::VectorXd held = Eigen::VectorXd::Unit(x.size(), i);
-  double best = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd next = x;
-  for (int step = 0; step < kMostSteps; ++step) {
-    Eigen::VectorXd rows;
-    Eigen::MatrixXd sensitivities;
-    if (!misfit.Evaluate(next, &rows, &sensitivities)) {
-      break;
-    }
-    const double square_sum = SquaredNorm(rows);
-    const Least least = LeastSquareSum(
-        rows, sensitivities, InnerProducts(sensitivities, sensitivities), held);
-    if (!(square_sum < best) || !(least.square_sum < most)) {
-      break;
-    }
-    best = square_sum;
-    x = next;
-    if (square_sum - least.square_sum < kSettledGain * variance) {
-      break;
-    }
-    next = Moved(misfit.Free(), x, least.change);
-  }
-  return best;
-}
-
 }  // namespace
 
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
@@ -294,44 +203,6 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
          LeastSquareSum(rows, sensitivities, information, a).square_sum,
          2 * a.dot(newton) / variance},
         beforehand, misfit);
-  }
-  return added;
-}
-
-Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
-                                      const Eigen::MatrixXd& covariance,
-                                      double variance,
-                                      const Eigen::VectorXd& minimum,
-                                      DisplacementMisfit& misfit) {
-  constexpr double kAlike = 9;      // Chi^2.
-  constexpr double kHopeless = 25;  // Chi^2.
-  Eigen::MatrixXd added = Eigen::MatrixXd::Zero(x.size(), x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double way = WayAcrossRange(misfit.Free(), x, i);
-    Eigen::VectorXd rows;
-    if (way == 0 || !misfit.Evaluate(minimum, &rows, nullptr)) {
-      continue;
-    }
-    const double least = SquaredNorm(rows);
-    Eigen::VectorXd looked_at = minimum;
-    double largest = covariance(i, i) + added(i, i);
-    for (const double share : {1.0 / 32, 1.0 / 8, 1.0 / 2}) {
-      looked_at(i) = x(i) + share * way;
-      const double rise =
-          LeastWithOneHeld(i, variance, least + kHopeless * variance, misfit,
-                           looked_at) -
-          least;
-      if (!(rise < kHopeless * variance)) {
-        break;
-      }
-      const Eigen::VectorXd move = looked_at - x;
-      const double of_look = move(i) * move(i) / std::max(rise / variance, 1.0);
-      if (rise < kAlike * variance && of_look > largest) {
-        added +=
-            (of_look - largest) / (move(i) * move(i)) * move * move.transpose();
-        largest = of_look;
-      }
-    }
   }
   return added;
 }

@@ -39,28 +39,6 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::VectorXd& beforehand,
                                       DisplacementMisfit& misfit);
 
-/// What a covariance of the variables at x understates when a ratio ends close
-/// to an end of its range, as nu does near 1/2.  Coarse elements become too
-/// stiff there.  The misfit then has a narrow dip, whose width comes from the
-/// mesh and not from the data.
-///
-/// For each such ratio, the misfit is evaluated with the ratio moved from x by
-/// 1/32, 1/8 and 1/2 of the way to the other end, and all other variables
-/// fitted again.  Let m be the move, and chi^2 the rise of the square sum over
-/// that at `minimum`, in units of `variance`, that of a row.  Where chi^2 < 9,
-/// the ratio may be off by m / sqrt(max(chi^2, 1)).  If the covariance says
-/// less than the largest of these, the difference is added along m.
-///
-/// `minimum` is the minimum of `misfit`, whose elements may be coarser than
-/// those that x was fitted with.  Without a ratio near an end this costs
-/// nothing; else one evaluation, and one to four for each look.  Looks end
-/// where chi^2 is 25.
-Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
-                                      const Eigen::MatrixXd& covariance,
-                                      double variance,
-                                      const Eigen::VectorXd& minimum,
-                                      DisplacementMisfit& misfit);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_MISFIT_CURVATURE_H_

@@ -49,12 +49,24 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
       misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
 }
 
+// Whether a search from far has ended at a minimum that is known.
+bool EndedAt(const BoundedMinimum& known, const BoundedMinimum& minimum) {
+  // In moduli relative, in ratios absolute.
+  constexpr double kBeside = 0.01;
+  return minimum.cost >= known.cost &&
+         (minimum.variables - known.variables).cwiseAbs().maxCoeff() < kBeside;
+}
+
 // The small radius of a search from far shortens its last steps as well, so
 // that it ends early; one without that radius follows.
 BoundedMinimum Descend(const EstimatorOptions& options,
                        const Eigen::VectorXd& start, Distance distance,
-                       DisplacementMisfit& misfit) {
+                       DisplacementMisfit& misfit,
+                       const std::optional<BoundedMinimum>& known) {
   const BoundedMinimum minimum = Search(options, start, distance, misfit);
+  if (known && EndedAt(*known, minimum)) {
+    return *known;
+  }
   return distance == Distance::kFar && minimum.end == End::kDone
              ? Search(options, minimum.variables, Distance::kNear, misfit)
              : minimum;
@@ -83,7 +95,7 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
   constexpr double kSettled = 0.05;
   double noise = NoiseAt(start, misfit);
   misfit.SetNoise(noise);
-  BoundedMinimum minimum = Descend(options, start, distance, misfit);
+  BoundedMinimum minimum = Descend(options, start, distance, misfit, {});
   for (int i = 0; i < kWeightings; ++i) {
     const double last = noise;
     noise = NoiseAt(minimum.variables, misfit);
@@ -91,7 +103,7 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
       break;
     }
     misfit.SetNoise(noise);
-    minimum = Descend(options, minimum.variables, Distance::kNear, misfit);
+    minimum = Descend(options, minimum.variables, Distance::kNear, misfit, {});
   }
   return minimum;
 }
@@ -100,10 +112,11 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
 
 BoundedMinimum DescendFrom(const EstimatorOptions& options,
                            const Eigen::VectorXd& start, Distance distance,
-                           DisplacementMisfit& misfit) {
+                           DisplacementMisfit& misfit,
+                           const std::optional<BoundedMinimum>& known) {
   return misfit.NumResultants() > 0
              ? DescendWithResultants(options, start, distance, misfit)
-             : Descend(options, start, distance, misfit);
+             : Descend(options, start, distance, misfit, known);
 }
 
 }  // namespace elastimate

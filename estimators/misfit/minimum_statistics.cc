@@ -8,6 +8,7 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/misfit/across_range.h"
 #include "elastimate/estimators/misfit/axis_rotation.h"
 #include "elastimate/estimators/misfit/curvature.h"
 #include "elastimate/estimators/misfit/mesh_error.h"

@@ -111,6 +111,22 @@ TEST(RefinedFit, OfAThinBodyIsCertified) {
   EXPECT_LE(estimate.work.factorizations, 12);
 }
 
+// Linear elements of a bent plate lock, and end next to nu = 1/2.  From there,
+// quadratic ones descend to a minimum on the wrong side of nu = 0.
+TEST(RefinedFit, OfABentPlateTellsTheSignOfNu) {
+  const Mesh plate = testing::BoxMesh({1, 2, 8}, {0.5, 2, 10});
+  Scene scene = testing::HeldAtBottom(plate, plate, {0.01, 0, 0});
+  for (const double nu : {-0.45, -0.3, 0.3}) {
+    const IsotropicElasticity truth = {5e4, nu};
+    testing::MeasureInCutWorld(truth, scene);
+    AddNoise(0.01, 1, scene);
+    const Estimate estimate = Fitted(scene);
+    SCOPED_TRACE(nu);
+    ExpectToHold(truth, estimate);
+    EXPECT_LT(*estimate.PoissonRatioStandardError(), 0.1);
+  }
+}
+
 TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {
   Scene scene = Block({2, 2, 4});
   testing::MeasureInCutWorld(kSpecimen, scene);
