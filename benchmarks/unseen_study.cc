@@ -291,20 +291,26 @@ class TrialsTable {
 UnseenOutcome OutcomeOf(const Specimen& specimen, const Setting& setting,
                         const Trial& trial, double processor_seconds) {
   const Estimate& estimate = trial.estimate;
-  return {setting.World(),
-          std::string(HalfName(specimen.shape.half)),
-          kDeviations[setting.deviation],
-          estimate.estimator,
-          trial.seed,
-          estimate.IsUsable(),
-          estimate.IsUsable() && IsWrong(trial),
-          CoverageOf(trial),
-          trial.YoungsModulusError(),
-          trial.PoissonRatioError(),
-          estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
-              trial.truth.youngs_modulus,
-          estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
-          processor_seconds};
+  return {
+      setting.World(),
+      std::string(HalfName(specimen.shape.half)),
+      kDeviations[setting.deviation],
+      estimate.estimator,
+      trial.seed,
+      estimate.IsUsable(),
+      estimate.IsUsable() &&
+          std::all_of(estimate.parameters.begin(), estimate.parameters.end(),
+                      [](const ParameterEstimate& parameter) {
+                        return parameter.IsDetermined();
+                      }),
+      estimate.IsUsable() && IsWrong(trial),
+      CoverageOf(trial),
+      trial.YoungsModulusError(),
+      trial.PoissonRatioError(),
+      estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
+          trial.truth.youngs_modulus,
+      estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
+      processor_seconds};
 }
 
 class UnseenStudy {

@@ -150,7 +150,7 @@ Table UnseenCells(const std::vector<UnseenOutcome>& outcomes) {
   Table table(
       "unseen_cells",
       {"world", "estimator", "displacement_deviation [1]", "half", "trials [1]",
-       "ok_share [1]", "youngs_modulus_coverage [1]",
+       "ok_share [1]", "determined_share [1]", "youngs_modulus_coverage [1]",
        "poisson_ratio_coverage [1]", "dishonest_share [1]",
        "median_youngs_modulus_error [1]", "median_poisson_ratio_error [1]",
        "median_youngs_modulus_standard_error [1]",
@@ -169,6 +169,7 @@ Table UnseenCells(const std::vector<UnseenOutcome>& outcomes) {
         {world, estimator, DeviationCell(deviation), half,
          std::int64_t(own.size()),
          Share(own, [](const UnseenOutcome& o) { return o.is_ok; }),
+         Share(own, [](const UnseenOutcome& o) { return o.is_determined; }),
          Share(ok,
                [](const UnseenOutcome& o) {
                  return o.coverage.youngs_modulus.value_or(false);

@@ -33,6 +33,7 @@ struct UnseenOutcome {
   std::string estimator;
   std::int64_t seed;  ///< One for each measurement.
   bool is_ok;
+  bool is_determined;  ///< Whether it is ok, and both parameters determined.
   /// Whether it is ok, and IsWrong by its standard errors alone.
   bool is_dishonest;
   Coverage coverage;
@@ -58,7 +59,8 @@ inline constexpr double kWantedStandardErrors = 2;
 
 /// Makes the table unseen_cells.  It has rows for each world, estimator,
 /// deviation and half, and for all deviations and both halves ("all").  A row
-/// gives the share of ok trials, the share of those whose intervals hold the
+/// gives the share of ok trials and of those that determine E and nu, the share
+/// of ok ones whose intervals hold the
 /// truth (a missing interval does not), the share of dishonest trials among
 /// all, and medians over the ok ones.
 Table UnseenCells(const std::vector<UnseenOutcome>& outcomes);

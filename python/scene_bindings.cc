@@ -439,6 +439,10 @@ void BindParameter(py::module_& module) {
       .def_readonly("standard_error", &ParameterEstimate::standard_error,
                     "In the unit of the value; None where unknown.")
       .def_property_readonly(
+          "is_determined", &ParameterEstimate::IsDetermined,
+          "Whether its standard error is small enough to be of use: a third of "
+          "a modulus, 0.15 of a ratio.")
+      .def_property_readonly(
           "interval",
           [](const ParameterEstimate& self)
               -> std::optional<std::pair<double, double>> {

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "elastimate/estimators/interface/limits.h"
+
 namespace elastimate {
 namespace {
 
@@ -37,6 +39,12 @@ std::string ParameterEstimate::Label() const {
     return symbol;
   }
   return symbol + " of " + RegionsLabel(regions);
+}
+
+bool ParameterEstimate::IsDetermined() const {
+  return standard_error.value_or(0) / ErrorUnit() <=
+         (IsStiffness() ? kLimits.largest_youngs_modulus_error
+                        : kLimits.largest_poisson_ratio_error);
 }
 
 std::string RegionsLabel(const std::vector<int>& regions) {

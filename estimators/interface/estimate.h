@@ -61,6 +61,9 @@ struct ParameterEstimate {
   bool IsPhysical() const {
     return value > limits.lower && value < limits.upper;
   }
+  /// Whether its standard error is small enough to be of use (Limits).  One
+  /// that is given, or whose error is not known, counts as determined.
+  bool IsDetermined() const;
 };
 
 /// The stiffness of a material that is not isotropic, in its own frame and the

@@ -87,13 +87,6 @@ Eigen::MatrixXd Transformed(const Eigen::MatrixXd& covariance,
   return transformed;
 }
 
-// Whether its error is small enough; of one without an error, it is not known.
-bool IsDetermined(const ParameterEstimate& parameter) {
-  return parameter.standard_error.value_or(0) / parameter.ErrorUnit() <=
-         (parameter.IsStiffness() ? kLimits.largest_youngs_modulus_error
-                                  : kLimits.largest_poisson_ratio_error);
-}
-
 bool HasFiniteVariance(const Estimate& estimate, std::size_t place) {
   const double variance =
       estimate.parameter_covariance(Eigen::Index(place), Eigen::Index(place));
@@ -121,7 +114,7 @@ bool AreAxesOnly(const Estimate& estimate) {
     if (const AxisEstimate* const axis = AxisOfParameter(estimate, i)) {
       is_axis_determined = is_axis_determined && IsDetermined(*axis, estimate);
     } else if (!parameter.is_known &&
-               !(HasFiniteVariance(estimate, i) && IsDetermined(parameter))) {
+               !(HasFiniteVariance(estimate, i) && parameter.IsDetermined())) {
       return false;
     }
   }
@@ -148,7 +141,7 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
       if (estimate.why_no_standard_error.empty()) {
         undetermined.push_back(parameter.Label());
       }
-    } else if (!IsDetermined(parameter)) {
+    } else if (!parameter.IsDetermined()) {
       // What is relative to other parameters is no share of this one.
       undetermined.push_back(
           parameter.Label() + " (" +
@@ -160,6 +153,15 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
     }
   }
   return undetermined;
+}
+
+bool IsOnBound(const ParameterEstimate& parameter, const Estimate& estimate) {
+  const std::vector<std::string>& active = estimate.active_bounds;
+  return std::any_of(active.begin(), active.end(),
+                     [&](const std::string& bound) {
+                       return bound == NameOfBound(parameter, true) ||
+                              bound == NameOfBound(parameter, false);
+                     });
 }
 
 // Tells whether E and nu are all there is.
@@ -174,13 +176,8 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
     return AxisUndetermined(undetermined);
   }
   const auto is_on_bound = [&](const ParameterEstimate& parameter) {
-    const auto& active = estimate.active_bounds;
-    return parameter.is_modulus && !IsDetermined(parameter) &&
-           std::any_of(active.begin(), active.end(),
-                       [&](const std::string& bound) {
-                         return bound == NameOfBound(parameter, true) ||
-                                bound == NameOfBound(parameter, false);
-                       });
+    return parameter.is_modulus && !parameter.IsDetermined() &&
+           IsOnBound(parameter, estimate);
   };
   if (std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
                   is_on_bound)) {
@@ -274,7 +271,7 @@ void EnterDetermination(Estimate& estimate) {
       if (!parameter.is_known && parameter.regions == material.regions) {
         ++num_free;
         num_determined +=
-            parameter.standard_error && IsDetermined(parameter) ? 1 : 0;
+            parameter.standard_error && parameter.IsDetermined() ? 1 : 0;
       }
     }
     material.determination = num_determined == num_free
@@ -323,8 +320,36 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
   }
 }
 
+// Whether some parameters are determined, and the errors of all others are
+// finite: these say all that there is to say of others.  What is not determined
+// of an axis, or on a bound, makes all parameters of the material doubtful.
+bool AreSomeDetermined(const Estimate& estimate) {
+  bool are_some = false;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    if (const AxisEstimate* const axis = AxisOfParameter(estimate, i)) {
+      if (!IsDetermined(*axis, estimate)) {
+        return false;
+      }
+    } else if (!parameter.is_known) {
+      if (!HasFiniteVariance(estimate, i) || IsOnBound(parameter, estimate)) {
+        return false;
+      }
+      are_some = are_some || (parameter.is_modulus && parameter.IsDetermined());
+    }
+  }
+  return are_some;
+}
+
 void JudgeDeterminationOfParameters(Estimate& estimate) {
-  if (!Undetermined(estimate).empty()) {
+  if (Undetermined(estimate).empty()) {
+    return;
+  }
+  if (AreSomeDetermined(estimate)) {
+    Finding finding = FindingOfUndetermined(estimate);
+    finding.severity = Severity::kWarning;
+    estimate.Add(finding);
+  } else {
     FailUndetermined(estimate);
   }
 }
@@ -430,7 +455,7 @@ bool AreUndeterminedByElements(const Estimate& estimate) {
   bool is_any_undetermined = false;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
-    if (parameter.is_known || IsDetermined(parameter)) {
+    if (parameter.is_known || parameter.IsDetermined()) {
       continue;
     }
     const double error = *parameter.standard_error / parameter.ErrorUnit();

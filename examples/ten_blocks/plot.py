@@ -74,7 +74,6 @@ def main():
     name = report["parameters"][0]["name"]
     title = name.replace("youngs", "Young's").replace("_", " ")
     shown = [parameter for parameter in report["parameters"] if parameter["name"] == name]
-    determination = [material["determination"] for material in report["materials"]] or ["determined"]
     truth = {}
     if len(sys.argv) == 5:
         with open(sys.argv[4], encoding="utf-8") as file:
@@ -82,8 +81,7 @@ def main():
                      for parameter in json.load(file)["parameters"] if parameter["name"] == name}
     values = [parameter["value"] for parameter in shown]
     norm = LogNorm(0.8 * min(values), 1.25 * max(values))
-    is_determined = [verdict == "determined" for verdict in determination]
-    undetermined = [region for parameter, known in zip(shown, is_determined) if not known
+    undetermined = [region for parameter in shown if not parameter["determined"]
                     for region in as_list(parameter["region"])]
     figure = plt.figure(figsize=(12, 4.5), layout="constrained")
     axis = draw_regions(figure, 121, sys.argv[1], name, norm, undetermined)
@@ -91,7 +89,7 @@ def main():
                     shrink=0.7, location="left")
     bars = figure.add_subplot(122)
     for i, parameter in enumerate(shown):
-        color = matplotlib.cm.viridis(norm(parameter["value"])) if is_determined[i] else "0.6"
+        color = matplotlib.cm.viridis(norm(parameter["value"])) if parameter["determined"] else "0.6"
         if parameter["interval"]:
             bars.plot([i, i], parameter["interval"], color=color, linewidth=3)
         bars.plot(i, parameter["value"], "o", color=color, markeredgecolor="k")

@@ -143,6 +143,7 @@ Json ParametersJson(const Estimate& estimate) {
          {"value", OrNull(parameter.value)},
          {"known", parameter.is_known},
          {"standard_error", OrNull(parameter.standard_error)},
+         {"determined", parameter.IsDetermined()},
          {"interval", interval ? Json({interval->lower, interval->upper})
                                : Json(nullptr)}});
   }

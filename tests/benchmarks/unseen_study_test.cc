@@ -207,6 +207,15 @@ void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
     EXPECT_EQ(cell.Number("trials [1]"), size);
     EXPECT_NEAR(cell.Number("ok_share [1]") * size,
                 static_cast<double>(ok.size()), kSevenDigits * size);
+    EXPECT_NEAR(cell.Number("determined_share [1]") * size,
+                Count(ok,
+                      [](const TableRow& row) {
+                        return row.Number("youngs_modulus_standard_error [1]") <
+                                   (1 + row.Number(kYoungsModulusError)) / 3 &&
+                               row.Number("poisson_ratio_standard_error [1]") <
+                                   0.15;
+                      }),
+                kSevenDigits * size);
     for (const std::string parameter : {"youngs_modulus", "poisson_ratio"}) {
       if (!ok.empty()) {
         EXPECT_NEAR(cell.Number(parameter + "_coverage [1]") *

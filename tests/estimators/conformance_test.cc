@@ -95,6 +95,35 @@ TEST_P(Conformance, RecoversTheTruthWithQuadraticElements) {
   }
 }
 
+// As a shot without a load, which shows how well the rest is reproduced.
+TEST_P(Conformance, TakesALoadCaseWithoutALoad) {
+  Scene scene = SmallScene("organ");
+  scene.load_cases.resize(1);
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  const Estimate expected = Run(scene);
+  scene.load_cases.push_back(scene.load_cases[0]);
+  LoadCase& rest = scene.load_cases[1];
+  rest.loads.clear();
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> noise(
+      0, kSmallNoise * rest.displacement.cwiseAbs().mean());
+  rest.displacement = Eigen::MatrixXd::NullaryExpr(
+      rest.displacement.rows(), rest.displacement.cols(),
+      [&] { return noise(generator); });
+  rest.displacement = scene.supports.held.select(0.0, rest.displacement.array())
+                          .matrix()
+                          .eval();
+  const Estimate estimate = Run(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus,
+              expected.elasticity.youngs_modulus,
+              3 * *expected.YoungsModulusStandardError());
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio,
+              expected.elasticity.poisson_ratio,
+              3 * *expected.PoissonRatioStandardError());
+}
+
 // A prepared estimator may differ by a tenth of a standard error, which is what
 // reduced-fe promises.  One of the two load cases has a load that has to be
 // assembled.
@@ -589,6 +618,16 @@ TEST_P(Conformance, ThrowsForWrongInput) {
     options.poisson_ratio = {0.4, 0.3};
     EXPECT_THROWS_WITH(Run(good, options), "bounds on Poisson's .* crossed");
   }
+}
+
+TEST_P(Conformance, RefusesNoiseThatIsLargerThanAllDisplacements) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  scene.load_cases[0].noise_sd =
+      2 * scene.load_cases[0].displacement.cwiseAbs().maxCoeff();
+  EXPECT_THROWS_WITH(Run(scene),
+                     "standard deviation of the noise of load case "
+                     "1.* check its unit");
 }
 
 TEST_P(Conformance, DisplacementsThatOpposeTheLoadsAreNamed) {

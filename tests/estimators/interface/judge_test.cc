@@ -179,6 +179,31 @@ TEST(Judge, AYoungsModulusWithoutLimitIsNoEstimate) {
   EXPECT_TRUE(estimate.Has(FindingCode::kParametersUndetermined));
 }
 
+// A slender beam that bends tells E, whatever nu is.
+TEST(Judge, AModulusIsUsableWithoutTheRatioBesideIt) {
+  const Scene scene = testing::SmallScene("cuboid");
+  const auto with_errors = [&](double relative, double of_nu) {
+    Estimate estimate = Measured();
+    estimate.Accept();
+    const double of_e = relative * estimate.elasticity.youngs_modulus;
+    estimate.covariance << of_e * of_e, 0, 0, of_nu * of_nu;
+    FinishEstimate("some", scene, {}, {}, estimate);
+    return estimate;
+  };
+  EXPECT_TRUE(with_errors(0.02, 0.1).findings.empty());
+  const Estimate usable = with_errors(0.02, 0.2);
+  EXPECT_EQ(usable.status, Status::kOk);
+  ASSERT_TRUE(usable.Has(FindingCode::kParametersUndetermined));
+  EXPECT_EQ(usable.findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(usable.findings[0].text, "the data do not determine nu (+- 0.2)");
+  EXPECT_TRUE(usable.parameters[0].IsDetermined());
+  EXPECT_FALSE(usable.parameters[1].IsDetermined());
+  // A ratio is no reason to use an estimate.
+  EXPECT_EQ(with_errors(0.4, 0.1).status, Status::kNotIdentifiable);
+  EXPECT_EQ(with_errors(0.02, std::numeric_limits<double>::infinity()).status,
+            Status::kNotIdentifiable);
+}
+
 // A fit without the outliers is too far from nu = 1/2 for a linear model.
 TEST(Judge, ARatioThatOutliersMayPullToItsLimitIsNoEstimate) {
   Evidence evidence;
