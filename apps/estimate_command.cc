@@ -320,7 +320,7 @@ int Run(const std::vector<std::string>& arguments, const Page* page) {
   if (arguments.empty()) {
     throw std::invalid_argument(
         std::string(page == nullptr ? "estimate" : "report") +
-        " needs a scene file; name a .json, .vtu, .vtk or .msh file");
+        " needs a scene file; name a .json, .vtu, .pvtu, .vtk or .msh file");
   }
   const std::shared_ptr<const Estimator> estimator =
       MakeEstimator(Printable(FLAGS_estimator));

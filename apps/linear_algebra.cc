@@ -161,7 +161,8 @@ void ForBlocks(
     std::size_t count,
     const std::function<void(std::size_t begin, std::size_t end)>& work) {
   const std::size_t num_blocks =
-      std::min(count, static_cast<std::size_t>(omp_get_max_threads()));
+      std::min(count, static_cast<std::size_t>(std::min(omp_get_max_threads(),
+                                                        LargestNumThreads())));
   if (num_blocks < 2) {
     return work(0, count);
   }
@@ -171,7 +172,7 @@ void ForBlocks(
   for (std::size_t i = 0; i < num_blocks; ++i) {
     blocks.push_back(
         std::async(std::launch::async, [&work, count, num_blocks, i] {
-          omp_set_num_threads(1);  // It is that of the calling thread.
+          omp_set_num_threads(1);  // This sets the number of this thread only.
           work(count * i / num_blocks, count * (i + 1) / num_blocks);
         }));
   }

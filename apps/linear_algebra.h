@@ -23,10 +23,10 @@ void UseBlasKernelsOfProcessor(char** argv);
 /// many as fit into the memory that the process may take.
 void SetThreads(int num_threads);
 
-/// Calls `work(begin, end)` for blocks of `count` things that are about equally
-/// large, as many blocks as there are threads (SetThreads), and all at once.
-/// Products of matrices then take one thread in each.  An exception of a block
-/// comes back when all have ended; that of the first block, if of several.
+/// Divides 0 .. count - 1 into as many blocks as there are threads
+/// (SetThreads), and calls work(begin, end) for all at the same time; linear
+/// algebra then uses one thread in each.  After all have ended, it rethrows the
+/// exception of the first block that threw.
 void ForBlocks(
     std::size_t count,
     const std::function<void(std::size_t begin, std::size_t end)>& work);

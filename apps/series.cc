@@ -1,9 +1,9 @@
 #include "apps/series.h"
 
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -106,7 +106,7 @@ void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
   }
 }
 
-// Compares each frame that has a residual with the last one before it that has.
+// Compares each residual with that of the nearest earlier frame that has one.
 void CompareNeighbours(const std::vector<Eigen::VectorXd>& residuals,
                        std::vector<FrameEstimate>& frames) {
   const Eigen::VectorXd* before = nullptr;
@@ -139,15 +139,19 @@ std::vector<FrameEstimate> EstimateFrames(
   const std::size_t num_frames = series.files.size();
   std::vector<FrameEstimate> frames(num_frames);
   std::vector<Eigen::VectorXd> residuals(num_frames);
-  std::atomic<std::size_t> num_started = 0;
+  std::size_t num_started = 0;
+  // A reader keeps what the frames have in common.
+  std::mutex reading;
   const auto estimate_block = [&](std::size_t begin, std::size_t end) {
     std::optional<PreparedEstimator> prepared;
     for (std::size_t i = begin; i < end; ++i) {
-      progress("frame " + std::to_string(++num_started) + " of " +
-               std::to_string(num_frames));
       frames[i].load = series.Load(i);
       try {
+        std::unique_lock<std::mutex> lock(reading);
+        progress("frame " + std::to_string(++num_started) + " of " +
+                 std::to_string(num_frames));
         const LoadCase frame = ReadFrame(series, i);
+        lock.unlock();
         Prepare(estimator, scene, frame, options, prepared);
         frames[i].estimate = prepared->RunLoadCases({frame});
         residuals[i] = ResidualOf(scene, frame, frames[i].estimate);

@@ -16,13 +16,12 @@ namespace elastimate {
 /// Throws as FrameSeries::read does.
 LoadCase ReadFrame(const FrameSeries& series, std::size_t i);
 
-/// Returns the estimate of each frame.  Each thread takes a block of frames one
-/// after another, for which the estimator is prepared once (ForBlocks); on
-/// large meshes, one thread takes all.  For a
-/// frame that cannot be read or used it says why.  `scene` is that of the
-/// frames, at the given standard deviation of noise, if any.  `progress` is
-/// told what is done next, from several threads.  Throws std::invalid_argument
-/// where the estimator does not take such frames.
+/// Returns the estimate of each frame.  Each thread estimates consecutive
+/// frames with an estimator that it prepares once (ForBlocks); on large meshes
+/// one thread estimates all.  For a frame that cannot be read or used it says
+/// why. `scene` is that of the frames, at the given standard deviation of
+/// noise, if any.  `progress` is told what is done next.  Throws
+/// std::invalid_argument where the estimator does not take such frames.
 std::vector<FrameEstimate> EstimateFrames(
     const Estimator& estimator, const Scene& scene, const FrameSeries& series,
     const EstimatorOptions& options,

@@ -44,7 +44,8 @@ HeldOutPart HeldOutPartFromFlag() {
 EstimatorOptions CheckValidateFlags(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     throw std::invalid_argument(
-        "validate needs a scene file; name a .json, .vtu, .vtk or .msh file");
+        "validate needs a scene file; name a .json, .vtu, .pvtu, .vtk or .msh "
+        "file");
   }
   if (FLAGS_folds < 2) {
     throw std::invalid_argument(AsGiven("folds") + "; it must be 2 or more");

@@ -33,7 +33,7 @@ struct UnseenOutcome {
   std::string estimator;
   std::int64_t seed;  ///< One for each measurement.
   bool is_ok;
-  bool is_determined;  ///< Whether it is ok, and both parameters determined.
+  bool is_determined;  ///< Whether it is ok and both parameters are determined.
   /// Whether it is ok, and IsWrong by its standard errors alone.
   bool is_dishonest;
   Coverage coverage;

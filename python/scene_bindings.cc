@@ -440,8 +440,8 @@ void BindParameter(py::module_& module) {
                     "In the unit of the value; None where unknown.")
       .def_property_readonly(
           "is_determined", &ParameterEstimate::IsDetermined,
-          "Whether its standard error is small enough to be of use: a third of "
-          "a modulus, 0.15 of a ratio.")
+          "Whether it is given, or has a standard error of at most a third of a "
+          "modulus or 0.15 of a ratio.")
       .def_property_readonly(
           "interval",
           [](const ParameterEstimate& self)

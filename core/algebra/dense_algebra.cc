@@ -123,7 +123,7 @@ SingularValueDecomposition DecomposeSingularValues(const Eigen::MatrixXd& a) {
 }
 
 SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a) {
-  if (a.size() == 0) {  // Eigen reads beyond it.
+  if (a.size() == 0) {  // Eigen reads outside of an empty matrix.
     return {Eigen::VectorXd(0), a};
   }
   if (a.rows() >= kLargeSymmetric && a.allFinite()) {

@@ -129,7 +129,7 @@ void AddLoads(const Mesh& mesh, const std::vector<Load>& loads,
     std::visit(LoadAssembler(mesh, force), loads[0]);
     return;
   }
-  // What loads that cancel leave of each other is rounding, and no load.
+  // Where loads cancel, only rounding is left, which must not count as a load.
   constexpr double kRounding = 1e-13;
   Eigen::ArrayXXd sizes = Eigen::ArrayXXd::Zero(force.rows(), force.cols());
   Eigen::MatrixXd own(force.rows(), force.cols());

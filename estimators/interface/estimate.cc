@@ -42,9 +42,11 @@ std::string ParameterEstimate::Label() const {
 }
 
 bool ParameterEstimate::IsDetermined() const {
-  return standard_error.value_or(0) / ErrorUnit() <=
-         (IsStiffness() ? kLimits.largest_youngs_modulus_error
-                        : kLimits.largest_poisson_ratio_error);
+  return is_known ||
+         (standard_error &&
+          *standard_error / ErrorUnit() <=
+              (IsStiffness() ? kLimits.largest_youngs_modulus_error
+                             : kLimits.largest_poisson_ratio_error));
 }
 
 std::string RegionsLabel(const std::vector<int>& regions) {
@@ -98,6 +100,13 @@ void Estimate::Add(const Finding& finding) {
   if (!Has(finding.code)) {
     findings.push_back(finding);
   }
+}
+
+void Estimate::Replace(const Finding& finding) {
+  RemoveFindings(
+      [&](const Finding& other) { return other.code == finding.code; },
+      findings);
+  Add(finding);
 }
 
 void Estimate::Accept() {

@@ -61,8 +61,8 @@ struct ParameterEstimate {
   bool IsPhysical() const {
     return value > limits.lower && value < limits.upper;
   }
-  /// Whether its standard error is small enough to be of use (Limits).  One
-  /// that is given, or whose error is not known, counts as determined.
+  /// Whether it is given, or has a standard error that is small enough to be of
+  /// use (Limits).
   bool IsDetermined() const;
 };
 
@@ -320,6 +320,8 @@ struct Estimate {
   std::vector<std::string> Sentences(Severity severity) const;
   /// Enters a finding that is no error, unless there is one of its code.
   void Add(const Finding& finding);
+  /// Enters a finding that is no error in place of others of its code.
+  void Replace(const Finding& finding);
   /// Makes it usable: without an error.
   void Accept();
   /// Makes it one that is not usable, with the status of the code and without

@@ -75,6 +75,19 @@ bool HasKnownNoise(const LoadCase& load_case) {
                                 load_case.points.noise_sd.size() != 0);
 }
 
+// Noise that is larger than all displacements is in another unit.
+void CheckNoise(const Scene& scene, double largest_displacement) {
+  for (const LoadCase& load_case : scene.load_cases) {
+    if (load_case.noise_sd && *load_case.noise_sd > 2 * largest_displacement) {
+      throw std::invalid_argument(
+          "the standard deviation of the noise, " +
+          NumberText(*load_case.noise_sd) +
+          ", is larger than every measured displacement (the largest is " +
+          NumberText(largest_displacement) + "); check its unit");
+    }
+  }
+}
+
 }  // namespace
 
 void CheckOptions(const EstimatorOptions& options) {
@@ -95,6 +108,7 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 
 std::vector<Finding> CheckMeasurements(const Scene& scene) {
   std::vector<std::size_t> moved;
+  double largest_displacement = 0;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     const std::string name = "load case " + std::to_string(k + 1);
@@ -115,21 +129,15 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
           " is zero at every free node, so that nothing can be estimated; "
           "check the columns or arrays that it was read from");
     }
-    if (load_case.noise_sd &&
-        *load_case.noise_sd > summary.largest_displacement) {
-      throw std::invalid_argument(
-          "the standard deviation of the noise of " + name + ", " +
-          NumberText(*load_case.noise_sd) +
-          ", is larger than each measured displacement (at most " +
-          NumberText(summary.largest_displacement) +
-          "), as if nothing was measured; check its unit");
-    }
+    largest_displacement =
+        std::max(largest_displacement, summary.largest_displacement);
     // Measurement noise on held nodes is no contradiction; a motion is.
     if (summary.held_deviation_square_sum >
         kLimits.held_motion * kLimits.held_motion * summary.free_square_sum) {
       moved.push_back(k + 1);
     }
   }
+  CheckNoise(scene, largest_displacement);
   return moved.empty() ? std::vector<Finding>{}
                        : std::vector<Finding>{HeldNodesMoved(moved)};
 }

@@ -176,8 +176,8 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
     return AxisUndetermined(undetermined);
   }
   const auto is_on_bound = [&](const ParameterEstimate& parameter) {
-    return parameter.is_modulus && !parameter.IsDetermined() &&
-           IsOnBound(parameter, estimate);
+    return parameter.is_modulus && parameter.standard_error &&
+           !parameter.IsDetermined() && IsOnBound(parameter, estimate);
   };
   if (std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
                   is_on_bound)) {
@@ -320,9 +320,9 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
   }
 }
 
-// Whether some parameters are determined, and the errors of all others are
-// finite: these say all that there is to say of others.  What is not determined
-// of an axis, or on a bound, makes all parameters of the material doubtful.
+// Whether a modulus is determined, and the errors of all other parameters are
+// finite.  An undetermined axis, or a parameter on a bound, makes all
+// parameters doubtful.
 bool AreSomeDetermined(const Estimate& estimate) {
   bool are_some = false;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
@@ -348,7 +348,7 @@ void JudgeDeterminationOfParameters(Estimate& estimate) {
   if (AreSomeDetermined(estimate)) {
     Finding finding = FindingOfUndetermined(estimate);
     finding.severity = Severity::kWarning;
-    estimate.Add(finding);
+    estimate.Replace(finding);
   } else {
     FailUndetermined(estimate);
   }
@@ -455,7 +455,7 @@ bool AreUndeterminedByElements(const Estimate& estimate) {
   bool is_any_undetermined = false;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
-    if (parameter.is_known || parameter.IsDetermined()) {
+    if (!parameter.standard_error || parameter.IsDetermined()) {
       continue;
     }
     const double error = *parameter.standard_error / parameter.ErrorUnit();

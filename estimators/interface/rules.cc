@@ -41,6 +41,7 @@ class RuleBook {
   void JudgeBoundExcess();
   void JudgeLargeResidual();
   void JudgeKnownRatio();
+  bool AreUndetermined(const std::vector<std::string>& ratios) const;
   void JudgeRatiosAtLimit();
   void JudgeWorkCheck();
 
@@ -193,13 +194,29 @@ void RuleBook::JudgeKnownRatio() {
   }
 }
 
+bool RuleBook::AreUndetermined(const std::vector<std::string>& ratios) const {
+  const Eigen::MatrixXd& covariance = estimate_.parameter_covariance;
+  const std::vector<ParameterEstimate>& parameters = estimate_.parameters;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    if (std::find(ratios.begin(), ratios.end(), parameters[i].Label()) !=
+            ratios.end() &&
+        !(std::sqrt(covariance(i, i)) > kLimits.largest_poisson_ratio_error)) {
+      return false;
+    }
+  }
+  return covariance.rows() > 0;
+}
+
 void RuleBook::JudgeRatiosAtLimit() {
   const std::vector<std::string>& ratios = evidence_.ratios_at_limit;
   if (ratios.empty()) {
     return;
   }
   if (evidence_.is_a_ratio_at_minus_one) {
-    Add(PoissonRatioAtMinusOne());
+    // If nu is not determined, the data do not drive it to -1.
+    if (!AreUndetermined(ratios)) {
+      Add(PoissonRatioAtMinusOne());
+    }
   } else if (estimate_.noise_attenuation) {
     Add(PoissonRatioDivergesByNoise());
   } else if (evidence_.outlier_change) {

@@ -1,6 +1,7 @@
 #include "elastimate/estimators/material_fit/material_descent.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 #include "elastimate/core/algebra/node_sums.h"
@@ -30,9 +31,10 @@ struct Start {
 // best there; none of other scenes, and where E or nu is known.  They descend,
 // as the coarse spaces of multigrid for one nu serve all smaller ones, and so
 // the fit that follows.
-std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
-                                           const std::vector<double>& ratios,
-                                           DisplacementMisfit& misfit) {
+std::vector<Start> StartsOverPoissonRatios(
+    const Scene& scene, Loss loss, DisplacementMisfit& misfit,
+    std::initializer_list<double> ratios = {0.499, 0.495, 0.48, 0.45, 0.3, 0.0,
+                                            -0.5, -0.85}) {
   std::vector<Start> starts;
   const FreeParameters& free = misfit.Free();
   if (!CertifiedDescent::Takes(scene) || free.Size() < 2) {
@@ -55,10 +57,8 @@ std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
   return starts;
 }
 
-const std::vector<double> kRatios = {0.499, 0.495, 0.48, 0.45,
-                                     0.3,   0.0,   -0.5, -0.85};
-
-// From where descents lead to every minimum that shows.
+// Starts that fit better than their neighbours: descents from them lead to
+// every minimum that shows.
 std::vector<Eigen::VectorXd> LeastOf(const std::vector<Start>& all) {
   std::vector<Eigen::VectorXd> starts;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -89,7 +89,7 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
 std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
                                            DisplacementMisfit& misfit) {
   const std::vector<Start> starts =
-      StartsOverPoissonRatios(scene, loss, kRatios, misfit);
+      StartsOverPoissonRatios(scene, loss, misfit);
   const auto best = std::min_element(
       starts.begin(), starts.end(),
       [](const Start& a, const Start& b) { return a.cost < b.cost; });
@@ -98,10 +98,22 @@ std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
 }
 
 std::vector<Eigen::VectorXd> StartsAcrossRange(const Scene& scene,
+                                               const BoundedMinimum& known,
                                                DisplacementMisfit& misfit) {
-  return LeastOf(StartsOverPoissonRatios(
-      scene, Loss::kNone,
-      {0.499, 0.48, 0.4, 0.3, 0.15, 0, -0.15, -0.3, -0.5, -0.7, -0.9}, misfit));
+  std::vector<Start> all = StartsOverPoissonRatios(
+      scene, Loss::kNone, misfit, {0.48, 0.3, 0.15, 0, -0.15, -0.3, -0.6});
+  if (!all.empty()) {
+    // Starts beside the known minimum lead to it.  Costs of starts are square
+    // sums, and those of minima half of them.
+    all.push_back({known.variables, 2 * known.cost});
+    std::sort(all.begin(), all.end(), [](const Start& a, const Start& b) {
+      return a.variables(1) > b.variables(1);
+    });
+  }
+  std::vector<Eigen::VectorXd> starts = LeastOf(all);
+  starts.erase(std::remove(starts.begin(), starts.end(), known.variables),
+               starts.end());
+  return starts;
 }
 
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
@@ -127,7 +139,7 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           Estimate& estimate) {
   std::vector<std::optional<Eigen::VectorXd>> starts;
   for (const Eigen::VectorXd& start :
-       LeastOf(StartsOverPoissonRatios(scene, Loss::kNone, kRatios, misfit))) {
+       LeastOf(StartsOverPoissonRatios(scene, Loss::kNone, misfit))) {
     starts.emplace_back(start);
   }
   if (starts.empty()) {

@@ -28,10 +28,12 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
 std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
                                            DisplacementMisfit& misfit);
 
-/// The variables, over the range of Poisson's ratio of one isotropic material,
-/// from which descents lead to each minimum that 11 ratios show; empty for
-/// others.
+/// The variables from which descents lead to each minimum, other than the known
+/// one, that 7 values of Poisson's ratio of one isotropic material show; empty
+/// for other materials.  They are closer to each other below zero than those
+/// from which a fit starts, as plates that bend have minima at nu and -nu.
 std::vector<Eigen::VectorXd> StartsAcrossRange(const Scene& scene,
+                                               const BoundedMinimum& known,
                                                DisplacementMisfit& misfit);
 
 /// The variables that virtual-fields comes to; empty where it does not take the

@@ -66,7 +66,7 @@ class ComputedFit {
   bool has_other_rows_ = false;
 };
 
-// Starts where the last usable fit ended.
+// Starts where the last usable fit of determined parameters ended.
 class MaterialFitPreparation : public Preparation {
  public:
   MaterialFitPreparation(const EstimatorOptions& options, Descent descent)
@@ -74,17 +74,22 @@ class MaterialFitPreparation : public Preparation {
 
   Estimate Run(const Scene& scene) override {
     MaterialFit fit = FitMaterialsFrom(start_, scene, options_, descent_);
-    if (start_ && !fit.estimate.IsUsable()) {
+    if (start_ && !IsGoodStart(fit.estimate)) {
       const Work work = fit.estimate.work;
       fit = FitMaterialsFrom(std::nullopt, scene, options_, descent_);
       fit.estimate.work = fit.estimate.work + work;
     }
-    start_ = fit.estimate.IsUsable() ? fit.Variables() : std::nullopt;
+    start_ = IsGoodStart(fit.estimate) ? fit.Variables() : std::nullopt;
     return fit.estimate;
   }
   bool TakesOtherLoadCases() const override { return true; }
 
  private:
+  static bool IsGoodStart(const Estimate& estimate) {
+    return estimate.IsUsable() &&
+           !estimate.Has(FindingCode::kParametersUndetermined);
+  }
+
   const EstimatorOptions& options_;
   Descent descent_;
   std::optional<Eigen::VectorXd> start_;

@@ -105,7 +105,7 @@ class Refinement {
   Chain FitQuadratic(const Scene& quadratic,
                      const std::optional<Eigen::VectorXd>& start);
   /// Looks for a better minimum than the one that coarser elements led to.
-  void LookForBetterMinimum(const MaterialFit& coarser, SpaceFit& fit) const;
+  void LookForBetterMinimum(const SpaceFit& coarser, SpaceFit& fit) const;
   void LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
                 const std::vector<const Scene*>& coarser, Chain& chain);
   static Chain MeanOf(Chain held, Chain free);
@@ -231,20 +231,21 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
   }
 }
 
-// Coarse elements that lock end far off, or next to an end of the range, from
-// where finer ones may descend to another minimum than the best one.
-bool MayLeadAstray(const MaterialFit& coarser, SpaceFit& fit) {
-  constexpr double kFarOff = 0.05;  // Of a ratio.
-  const Eigen::VectorXd& from = coarser.minimum->variables;
-  const Eigen::VectorXd& to = fit.Fit().minimum->variables;
-  return AwayFromEnds(fit.Misfit().Free(), to) != to ||
-         std::abs(from.tail<1>()(0) - to.tail<1>()(0)) > kFarOff;
+// Coarse elements that lock may end far from the right nu.  A finer fit that
+// starts there may come to a minimum that is not the best.
+bool MayLeadAstray(const SpaceFit& coarser, const SpaceFit& fit) {
+  // Of the displacements.
+  constexpr double kLocked = kLimits.large_residual * kLimits.large_residual;
+  constexpr double kNextToMinusOne = -0.98;
+  return coarser.SquareSum() > std::max(kLocked, 4 * fit.SquareSum()) ||
+         fit.Fit().minimum->variables.tail<1>()(0) < kNextToMinusOne;
 }
 
-void Refinement::LookForBetterMinimum(const MaterialFit& coarser,
+void Refinement::LookForBetterMinimum(const SpaceFit& coarser,
                                       SpaceFit& fit) const {
-  if (coarser.minimum && fit.Fit().minimum && options_.loss == Loss::kNone &&
-      !HasUnknownMotion(scene_) && IsOneIsotropicMaterial(scene_.materials) &&
+  if (coarser.Fit().minimum && fit.Fit().minimum &&
+      options_.loss == Loss::kNone && !HasUnknownMotion(scene_) &&
+      IsOneIsotropicMaterial(scene_.materials) &&
       !fit.Misfit().HasLargeStrains() && MayLeadAstray(coarser, fit)) {
     fit.MinimizeAcrossRange(descent_);
   }
@@ -260,7 +261,7 @@ Refinement::Chain Refinement::FitQuadratic(
   }
   chain.quadratic = MinimizeOn(quadratic, start, coarser, linear_.get());
   if (linear_) {
-    LookForBetterMinimum(linear_->Fit(), *chain.quadratic);
+    LookForBetterMinimum(*linear_, *chain.quadratic);
   }
   chain.work = chain.quadratic->Fit().estimate.work;
   if (!chain.quadratic->Fit().minimum) {
@@ -287,7 +288,7 @@ Refinement::Chain Refinement::FitQuadratic(
     }
     std::unique_ptr<SpaceFit> divided = MinimizeOn(
         FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser, &fit);
-    LookForBetterMinimum(fit.Fit(), *divided);
+    LookForBetterMinimum(fit, *divided);
     chain.work = chain.work + divided->Fit().estimate.work;
     if (divided->Fit().minimum) {
       chain.coarser = &fit;

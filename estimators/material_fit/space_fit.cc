@@ -286,13 +286,15 @@ void SpaceFit::MinimizeAcrossRange(Descent descent) {
   MaterialFit best = fit_;
   const Work of_found = fit_.estimate.work;
   const Work before = WorkDone();
-  for (const Eigen::VectorXd& start : StartsAcrossRange(scene_, misfit_)) {
+  for (const Eigen::VectorXd& start :
+       StartsAcrossRange(scene_, *best.minimum, misfit_)) {
     Minimize(descent, start);
     if (fit_.minimum && fit_.minimum->cost < best.minimum->cost) {
       best = fit_;
     }
   }
   fit_ = best;
+  EnterMinimum();
   fit_.estimate.work = of_found + (WorkDone() - before);
 }
 

@@ -60,9 +60,10 @@ class SpaceFit {
   /// its parameters, its displacement and its residual.  Without a minimum, the
   /// estimate says that displacements oppose the loads.
   void Minimize(Descent descent, const std::optional<Eigen::VectorXd>& start);
-  /// Takes a better minimum where Poisson's ratio over its whole range has one.
-  /// Preconditions: a minimum; one isotropic material of small strains.  Costs
-  /// 11 solutions, and a descent for each minimum that these show.
+  /// Descends from starts over the whole range of Poisson's ratio, and keeps
+  /// the best minimum.  Preconditions: a minimum; one isotropic material of
+  /// small strains.  Costs 7 solutions, and a descent for each other minimum
+  /// that these show.
   void MinimizeAcrossRange(Descent descent);
 
   /// Describes the minimum, with the mesh error that `change` from coarser

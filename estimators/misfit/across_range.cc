@@ -12,7 +12,8 @@
 namespace elastimate {
 namespace {
 
-// Looks at a ratio: parts of the way to an end of its range.
+// The parts of the way to an end of the range of a ratio at which the misfit is
+// evaluated.
 struct WayOfLooks {
   double way;
   std::array<double, 3> parts;
@@ -100,6 +101,9 @@ Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
       Eigen::VectorXd looked_at = minimum;
       for (const double part : parts) {
         looked_at(i) = x(i) + part * way;
+        if (part * part * way * way <= largest) {
+          continue;  // It could add nothing.
+        }
         const double rise =
             LeastWithOneHeld(i, variance, least + kHopeless * variance, misfit,
                              looked_at) -

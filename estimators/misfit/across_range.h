@@ -8,10 +8,10 @@
 namespace elastimate {
 
 /// What a covariance of the variables at x understates because values of a
-/// ratio far from x fit about as well.  Two scenes have such values: coarse
-/// elements become too stiff close to an end of the range, as of nu near 1/2,
-/// so that the misfit has a narrow dip there, whose width comes from the mesh
-/// and not from the data; and a beam that bends hardly tells nu from -nu.
+/// ratio far from x fit about as well.  Two kinds of scenes have such values.
+/// Close to an end of the range, as of nu near 1/2, coarse elements lock, and
+/// make a narrow dip of the misfit, whose width comes from the mesh and not
+/// from the data.  In bending, nu and -nu give nearly the same displacements.
 ///
 /// The misfit is evaluated with the ratio moved from x by 1/32, 1/8 and 1/2 of
 /// the way to the other end where x is within 2 % of the range of one end, by

@@ -50,11 +50,24 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
 }
 
 // Whether a search from far has ended at a minimum that is known.
-bool EndedAt(const BoundedMinimum& known, const BoundedMinimum& minimum) {
-  // In moduli relative, in ratios absolute.
-  constexpr double kBeside = 0.01;
-  return minimum.cost >= known.cost &&
-         (minimum.variables - known.variables).cwiseAbs().maxCoeff() < kBeside;
+bool EndedAt(const BoundedMinimum& known, const BoundedMinimum& minimum,
+             const std::vector<Bounds>& bounds) {
+  // Relative in moduli; in ratios, of the way to the nearer end of the range.
+  constexpr double kOfModulus = 0.01;
+  constexpr double kOfWay = 0.05;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double value = known.variables(Eigen::Index(i));
+    const double difference =
+        std::abs(minimum.variables(Eigen::Index(i)) - value);
+    const double way =
+        bounds[i].lower && bounds[i].upper
+            ? std::min(value - *bounds[i].lower, *bounds[i].upper - value)
+            : kOfModulus / kOfWay;
+    if (!(difference < kOfWay * way)) {
+      return false;
+    }
+  }
+  return minimum.cost >= known.cost;
 }
 
 // The small radius of a search from far shortens its last steps as well, so
@@ -64,7 +77,7 @@ BoundedMinimum Descend(const EstimatorOptions& options,
                        DisplacementMisfit& misfit,
                        const std::optional<BoundedMinimum>& known) {
   const BoundedMinimum minimum = Search(options, start, distance, misfit);
-  if (known && EndedAt(*known, minimum)) {
+  if (known && EndedAt(*known, minimum, misfit.Free().VariableBounds())) {
     return *known;
   }
   return distance == Distance::kFar && minimum.end == End::kDone

@@ -16,7 +16,7 @@ enum class Distance { kFar, kNear };
 /// The minimum of a misfit within bounds that a start leads to, by Ceres;
 /// resultants weigh there as much as their errors say beside those of the
 /// displacements, which the fit shows (some descents more).  Without
-/// resultants, a descent from far that comes near a known minimum ends there.
+/// resultants, a descent from far that comes near a known minimum returns that.
 BoundedMinimum DescendFrom(const EstimatorOptions& options,
                            const Eigen::VectorXd& start, Distance distance,
                            DisplacementMisfit& misfit,

@@ -424,7 +424,7 @@ PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
   }
   if (AreOnALine(positions)) {
     throw std::invalid_argument(
-        "all points lie on a line, of which there is no mesh; check the "
+        "all points lie on one line, which makes no mesh; check the "
         "columns of the positions");
   }
   const Elements quadrilaterals = QuadrilateralsOf(positions);

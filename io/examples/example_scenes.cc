@@ -15,7 +15,7 @@ namespace elastimate {
 namespace {
 
 constexpr int kMinOrganTetrahedra = 200;
-constexpr int kMaxOrganTetrahedra = 10000000;
+constexpr int kMaxOrganTetrahedra = 2000000;
 constexpr int kMaxCuboidTetrahedra = 10000000;
 constexpr int kTetrahedraPerCell = 5;
 

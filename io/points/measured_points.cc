@@ -69,21 +69,21 @@ double RoundedUp(double length) {
   return unit * std::ceil(length * (1 + 1e-9) / unit);
 }
 
-// Points that lie farther off than this part of the mesh's diagonal are not
-// measured on it.
-constexpr double kLargestPart = 0.02;
-
 void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     const Eigen::VectorXd& distance, double tolerance,
                     double diagonal, std::vector<std::string>& notices) {
+  // Points farther away than this share of the diagonal were not measured on
+  // this mesh.
+  constexpr double kLargestPart = 0.02;
   const double needed = distance.size() > 0 ? distance.maxCoeff() : 0;
   const std::string mend =
       needed > kLargestPart * diagonal
           ? "check that the points have the origin, the axes (with their "
-            "signs) and the \"unit\" of the mesh, and are positions before the load"
+            "signs) and the \"unit\" of the mesh, and are positions before the "
+            "load"
           : "use the mesh's axes and its \"unit\", leave it out, or give the "
             "\"tolerance\" " +
-                LengthText(RoundedUp(needed)) +
+                LengthText(needed > 0 ? RoundedUp(needed) : 0) +
                 ", which takes all points of the file";
   for (Eigen::Index point = 0; point < distance.size(); ++point) {
     if (distance(point) > tolerance) {

@@ -228,8 +228,8 @@ void CheckDifferent(const CsvTable& table, std::vector<std::size_t> columns) {
   if (same != columns.end()) {
     ThrowInputError(table.path, "the column '" +
                                     Printable(table.titles[*same].text) +
-                                    "' is named twice as \"columns\"; name "
-                                    "another one for each component");
+                                    "' is named twice in \"columns\"; name "
+                                    "a different one for each component");
   }
 }
 

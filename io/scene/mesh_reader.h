@@ -7,8 +7,7 @@
 
 namespace elastimate {
 
-/// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
-/// capital letters.  The mesh is as CheckMeshFile demands; arrays are as the
+/// Reads the files of kMeshExtensions; the extension may be in capital letters.  The mesh is as CheckMeshFile demands; arrays are as the
 /// file has them.  Throws as ReadScene does.
 MeshFile ReadMeshFile(const std::filesystem::path& path);
 

@@ -91,9 +91,9 @@ struct SceneReading {
   std::vector<PointGap> gaps;
 };
 
-/// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
-/// node data), or from a scene.json over a mesh file (.vtu, .vtk, .msh, .mesh,
-/// .unv, .bdf, .inp, .feb); docs/scenes.md describes both.  Several files are
+/// Reads a scene from files whose arrays make it up (.vtu, .pvtu, .vtk, or .msh
+/// with node data), or from a scene.json over a mesh file (these, .mesh, .unv,
+/// .bdf, .inp, .feb); docs/scenes.md describes both.  Several files are
 /// further load cases of one specimen: the same nodes (to a millionth of the
 /// largest coordinate), cells, regions and supports.  A load case given twice
 /// is an error: its noise would count as that of two measurements.

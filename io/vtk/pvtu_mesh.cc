@@ -1,11 +1,14 @@
 #include "elastimate/io/vtk/pvtu_mesh.h"
 
 #include <vtkAppendFilter.h>
+#include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStaticPointLocator.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
@@ -30,6 +33,27 @@ struct Piece {
   vtkSmartPointer<vtkUnstructuredGrid> grid;
 };
 
+// Removes cells that belong to another piece.  VTK takes only bytes for the
+// marks of such cells, but other programs write numbers of any type.
+void RemoveGhostCells(vtkUnstructuredGrid* grid) {
+  const char* const name = vtkDataSetAttributes::GhostArrayName();
+  vtkDataArray* const marks = grid->GetCellData()->GetArray(name);
+  if (marks != nullptr) {
+    vtkNew<vtkUnsignedCharArray> bytes;
+    bytes->SetName(name);
+    for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
+      bytes->InsertNextValue(marks->GetComponent(i, 0) != 0
+                                 ? vtkDataSetAttributes::DUPLICATECELL
+                                 : 0);
+    }
+    grid->GetCellData()->RemoveArray(name);
+    grid->GetCellData()->AddArray(bytes);
+  }
+  grid->GetPointData()->RemoveArray(name);
+  grid->RemoveGhostCells();
+  grid->GetCellData()->RemoveArray(name);
+}
+
 std::vector<Piece> ReadPieces(const fs::path& path) {
   pugi::xml_document document;
   if (const auto parsed = document.load_file(path.c_str()); !parsed) {
@@ -46,7 +70,11 @@ std::vector<Piece> ReadPieces(const fs::path& path) {
     const fs::path file = path.parent_path() / name;
     CheckReadable(file);
     const vtkSmartPointer<vtkUnstructuredGrid> of_piece = ReadVtuGrid(file);
-    of_piece->RemoveGhostCells();
+    // Filters of VTK trust that the parts of a grid agree, and this checks it.
+    if (!ToMeshFile(file, of_piece).nodes.allFinite()) {
+      ThrowDamagedVtk(file, "a position is not finite");
+    }
+    RemoveGhostCells(of_piece);
     // A process without cells may have written no arrays, either.
     if (of_piece->GetNumberOfCells() > 0) {
       pieces.push_back({file, of_piece});
@@ -78,63 +106,76 @@ std::vector<vtkIdType> PointsOf(const Piece& piece,
   for (vtkIdType i = 0; i < vtkIdType(points.size()); ++i) {
     points[i] = locator->FindClosestPoint(piece.grid->GetPoint(i));
     if (!others.insert(points[i]).second) {
+      const double* const x = piece.grid->GetPoint(i);
       ThrowInputError(piece.path,
-                      "point " + std::to_string(i) +
-                          " lies where another point of this piece does, and "
-                          "the pieces of a .pvtu file are joined where their "
-                          "points are at the same place; write the whole grid "
-                          "as one .vtu file");
+                      "two points are at (" + std::to_string(x[0]) + ", " +
+                          std::to_string(x[1]) + ", " + std::to_string(x[2]) +
+                          "), so it is unclear which one the other pieces "
+                          "share; write the whole grid as one .vtu file");
     }
   }
   return points;
 }
 
-void CheckValues(const Piece& piece, const std::vector<vtkIdType>& points,
-                 vtkDataArray* whole) {
+bool Agree(const Piece& piece, const std::vector<vtkIdType>& points,
+           vtkDataArray* whole) {
   constexpr double kTolerance = 1e-3;
   vtkDataArray* const own =
       piece.grid->GetPointData()->GetArray(whole->GetName());
-  for (int component = 0; component < whole->GetNumberOfComponents();
-       ++component) {
-    const double* const range = whole->GetFiniteRange(component);
-    const double largest = std::max(std::abs(range[0]), std::abs(range[1]));
+  double largest = 0;
+  double difference = 0;
+  for (int k = 0; k < whole->GetNumberOfComponents(); ++k) {
     for (vtkIdType i = 0; i < vtkIdType(points.size()); ++i) {
-      const double difference =
-          std::abs(own->GetComponent(i, component) -
-                   whole->GetComponent(points[i], component));
-      if (difference > kTolerance * largest) {
-        ThrowInputError(
-            piece.path,
-            "the array '" + std::string(whole->GetName()) +
-                "' has another value at point " + std::to_string(i) +
-                " than another piece has at the same place; write values that "
-                "agree, or leave the array out");
-      }
+      const double value = own->GetComponent(i, k);
+      // Comparisons with what is not a number are false.
+      largest = std::max(largest, std::abs(value));
+      difference = std::max(
+          difference, std::abs(value - whole->GetComponent(points[i], k)));
     }
   }
+  return difference <= kTolerance * largest;
 }
 
-void CheckJoints(const std::vector<Piece>& pieces, vtkUnstructuredGrid* whole) {
+// Removes the point arrays on which pieces disagree, and returns their names.
+std::vector<std::string> RemoveWhatDisagrees(const std::vector<Piece>& pieces,
+                                             vtkUnstructuredGrid* whole) {
   vtkNew<vtkStaticPointLocator> locator;
   locator->SetDataSet(whole);
   locator->BuildLocator();
+  std::set<std::string> names;
   for (const Piece& piece : pieces) {
     const std::vector<vtkIdType> points = PointsOf(piece, locator);
     for (int i = 0; i < whole->GetPointData()->GetNumberOfArrays(); ++i) {
-      if (vtkDataArray* const array = whole->GetPointData()->GetArray(i)) {
-        CheckValues(piece, points, array);
+      vtkDataArray* const array = whole->GetPointData()->GetArray(i);
+      if (array != nullptr && array->GetName() != nullptr &&
+          !Agree(piece, points, array)) {
+        names.insert(array->GetName());
       }
     }
   }
+  for (const std::string& name : names) {
+    whole->GetPointData()->RemoveArray(name.c_str());
+  }
+  return {names.begin(), names.end()};
 }
 
 }  // namespace
 
 MeshFile ReadPvtuMesh(const fs::path& path) {
   const std::vector<Piece> pieces = ReadPieces(path);
+  if (pieces.size() == 1) {
+    return ToMeshFile(path, pieces[0].grid);
+  }
   const vtkSmartPointer<vtkUnstructuredGrid> whole = Join(pieces);
-  CheckJoints(pieces, whole);
-  return ToMeshFile(path, whole);
+  const std::vector<std::string> left_out = RemoveWhatDisagrees(pieces, whole);
+  MeshFile mesh = ToMeshFile(path, whole);
+  for (const std::string& name : left_out) {
+    mesh.notices.push_back(PrintablePath(path) + ": the array '" +
+                           Printable(name) +
+                           "' is left out, as pieces have different values of "
+                           "it at points that they share");
+  }
+  return mesh;
 }
 
 }  // namespace elastimate

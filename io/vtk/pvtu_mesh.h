@@ -9,14 +9,14 @@ namespace elastimate {
 
 /// Reads an unstructured grid whose pieces are .vtu files of their own, as a
 /// program writes it that runs on several processes.  Points of two pieces at
-/// exactly the same place become one node, and ghost cells are left out.  Node
-/// arrays keep what the first piece says of a point.
+/// exactly the same place become one node.  Ghost cells are left out, and so
+/// are arrays that some pieces lack, or on whose values at a shared point two
+/// pieces disagree by more than a thousandth of the largest value (with a
+/// notice).
 ///
 /// Throws std::invalid_argument, naming the file, for a damaged file or piece,
-/// for a piece with two points at one place, which say nothing of which of them
-/// the other pieces continue, and for an array of points on whose values two
-/// pieces disagree by more than a thousandth of its largest value.
-/// O(num_points log num_points).
+/// and for a piece with two points at one place, as it is unclear which one
+/// other pieces share.  O(num_points log num_points).
 MeshFile ReadPvtuMesh(const std::filesystem::path& path);
 
 }  // namespace elastimate

@@ -386,7 +386,7 @@ def read(
     material: str = "",
     measured: bool = True,
 ) -> Scene:
-    """Reads a scene.json, or .vtu, .vtk or .msh files with the arrays of a scene (docs/scenes.md).
+    """Reads a scene.json, or .vtu, .pvtu, .vtk or .msh files with the arrays of a scene (docs/scenes.md).
 
     paths      several files are further load cases of one specimen
     section, thickness

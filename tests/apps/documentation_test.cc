@@ -258,8 +258,6 @@ TEST_F(Documentation, HasTheCommandsOfTheTenBlocks) {
   const std::vector<std::string> blocks =
       Blocks("examples/ten_blocks/README.md", "");
   ASSERT_EQ(blocks.size(), 4U);
-  // The last command but one exits with 1, because its data do not determine a
-  // parameter; the shell goes on all the same.
   EXPECT_THAT(
       RunCommands(blocks[0]),
       ::testing::HasSubstr("the data do not determine E of region 10 ("));

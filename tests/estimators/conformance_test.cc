@@ -95,7 +95,7 @@ TEST_P(Conformance, RecoversTheTruthWithQuadraticElements) {
   }
 }
 
-// As a shot without a load, which shows how well the rest is reproduced.
+// A shot without a load shows the noise.
 TEST_P(Conformance, TakesALoadCaseWithoutALoad) {
   Scene scene = SmallScene("organ");
   scene.load_cases.resize(1);
@@ -624,10 +624,9 @@ TEST_P(Conformance, RefusesNoiseThatIsLargerThanAllDisplacements) {
   Scene scene = SmallScene("cuboid");
   Measure({5e4, 0.3}, scene);
   scene.load_cases[0].noise_sd =
-      2 * scene.load_cases[0].displacement.cwiseAbs().maxCoeff();
+      3 * scene.load_cases[0].displacement.cwiseAbs().maxCoeff();
   EXPECT_THROWS_WITH(Run(scene),
-                     "standard deviation of the noise of load case "
-                     "1.* check its unit");
+                     "standard deviation of the noise, .* check its unit");
 }
 
 TEST_P(Conformance, DisplacementsThatOpposeTheLoadsAreNamed) {

@@ -190,15 +190,16 @@ TEST(Judge, AModulusIsUsableWithoutTheRatioBesideIt) {
     FinishEstimate("some", scene, {}, {}, estimate);
     return estimate;
   };
-  EXPECT_TRUE(with_errors(0.02, 0.1).findings.empty());
+  EXPECT_FALSE(
+      with_errors(0.02, 0.1).Has(FindingCode::kParametersUndetermined));
   const Estimate usable = with_errors(0.02, 0.2);
   EXPECT_EQ(usable.status, Status::kOk);
-  ASSERT_TRUE(usable.Has(FindingCode::kParametersUndetermined));
-  EXPECT_EQ(usable.findings[0].severity, Severity::kWarning);
-  EXPECT_EQ(usable.findings[0].text, "the data do not determine nu (+- 0.2)");
+  EXPECT_EQ(usable.Sentences(Severity::kWarning)[0].find(
+                "the data do not determine nu (+- 0.2)"),
+            0);
   EXPECT_TRUE(usable.parameters[0].IsDetermined());
   EXPECT_FALSE(usable.parameters[1].IsDetermined());
-  // A ratio is no reason to use an estimate.
+  // A determined ratio alone makes no estimate usable.
   EXPECT_EQ(with_errors(0.4, 0.1).status, Status::kNotIdentifiable);
   EXPECT_EQ(with_errors(0.02, std::numeric_limits<double>::infinity()).status,
             Status::kNotIdentifiable);
@@ -254,8 +255,10 @@ Estimate OfTwoMaterials(double missed) {
 TEST(JudgeParameters, SaysWhatLeavesThemUndetermined) {
   Estimate by_data = OfTwoMaterials(0.1);
   JudgeParameters(by_data);
+  EXPECT_TRUE(by_data.IsUsable());
+  ASSERT_EQ(by_data.findings.size(), 1U);
   EXPECT_EQ(
-      by_data.message,
+      Sentence(by_data.findings[0]),
       "the data do not determine E of region 2 (+- 60 %); give what is known "
       "(--nu, or \"known\" of a material), join regions, or add load cases");
   EXPECT_FALSE(AreUndeterminedByElements(by_data));
@@ -263,7 +266,8 @@ TEST(JudgeParameters, SaysWhatLeavesThemUndetermined) {
   Estimate by_elements = OfTwoMaterials(0.59);
   by_elements.element_order = 2;
   JudgeParameters(by_elements);
-  EXPECT_EQ(by_elements.message,
+  ASSERT_EQ(by_elements.findings.size(), 1U);
+  EXPECT_EQ(Sentence(by_elements.findings[0]),
             "the elements are too coarse to determine E of region 2 (+- 60 %); "
             "use a finer mesh");
   EXPECT_TRUE(AreUndeterminedByElements(by_elements));

@@ -11,7 +11,7 @@
 namespace elastimate {
 namespace {
 
-constexpr double kYoungsModulus = 5e4;
+constexpr double kStiffness = 5e4;
 
 // With exact displacements of a known modulus, so that the square sum at
 // another ratio is that of the change of the displacements.
@@ -20,15 +20,15 @@ class AcrossRange : public ::testing::Test {
   explicit AcrossRange(double poisson_ratio = 0.499)
       : poisson_ratio_(poisson_ratio) {
     scene_.materials = {
-        {"isotropic", {}, {{"youngs_modulus", kYoungsModulus}}, {}}};
+        {"isotropic", {}, {{"youngs_modulus", kStiffness}}, {}}};
     exact_ = Displacement(poisson_ratio);
-    Measure({kYoungsModulus, poisson_ratio}, scene_);
+    Measure({kStiffness, poisson_ratio}, scene_);
     misfit_.emplace(scene_, EstimatorOptions());
   }
 
   Eigen::MatrixXd Displacement(double poisson_ratio) const {
     Scene scene = scene_;
-    Measure({kYoungsModulus, poisson_ratio}, scene);
+    Measure({kStiffness, poisson_ratio}, scene);
     return scene.load_cases[0].displacement;
   }
 
@@ -94,7 +94,7 @@ TEST_F(AcrossRangeFarFromEnds, CostsNothingWhereTheErrorIsSmall) {
   EXPECT_EQ(misfit_->Model().WorkDone().factorizations, 0);
 }
 
-// A second minimum, as of -nu in a beam that bends, is such a look.
+// Such a look finds a second minimum, as at -nu in bending.
 TEST_F(AcrossRangeFarFromEnds, WidensWhereAnotherValueFitsAsWell) {
   const double standard_error = 0.05;
   const double half_way = Move(1.0 / 2);

@@ -203,9 +203,9 @@ TEST(PointMesh, TellsPointsThatMakeNone) {
                      "give a larger \"max_edge\"");
   Eigen::Matrix2Xd line(2, 5);
   line << 0, 1, 2, 3, 4, 0, 0, 0, 0, 0;
-  EXPECT_THROWS_WITH(MeshOfPoints(line, {}), "all points lie on a line");
+  EXPECT_THROWS_WITH(MeshOfPoints(line, {}), "all points lie on one line");
   line.row(1) = line.row(0) / 3;
-  EXPECT_THROWS_WITH(MeshOfPoints(line, {}), "all points lie on a line");
+  EXPECT_THROWS_WITH(MeshOfPoints(line, {}), "all points lie on one line");
 }
 
 }  // namespace

@@ -117,13 +117,20 @@ TEST_F(PvtuMeshTest, MayHaveAPieceWithoutCells) {
   EXPECT_NE(FindArray(read.node_arrays, "place"), nullptr);
 }
 
-TEST_F(PvtuMeshTest, IsRefusedWherePiecesDisagree) {
+TEST_F(PvtuMeshTest, LeavesOutArraysOnWhichPiecesDisagree) {
   for (Piece& piece : pieces_) {
-    piece.fields.point[0].values.array() += 0.01 * (&piece - pieces_.data());
+    const Eigen::MatrixXd& place = piece.fields.point[0].values;
+    piece.fields.point.push_back(
+        {"process", Eigen::RowVectorXd::Constant(
+                        place.cols(), double(&piece - pieces_.data()))});
   }
-  EXPECT_THROWS_WITH(Read(),
-                     "piece_1.vtu: the array 'place' has another value "
-                     "at point ");
+  const MeshFile read = Read();
+  EXPECT_NE(FindArray(read.node_arrays, "place"), nullptr);
+  EXPECT_EQ(FindArray(read.node_arrays, "process"), nullptr);
+  ASSERT_EQ(read.notices.size(), 1U);
+  EXPECT_NE(read.notices[0].find("block.pvtu: the array 'process' is left out"),
+            std::string::npos)
+      << read.notices[0];
 }
 
 TEST_F(PvtuMeshTest, IsRefusedWhereAPieceHasTwoPointsAtOnePlace) {
@@ -132,8 +139,7 @@ TEST_F(PvtuMeshTest, IsRefusedWhereAPieceHasTwoPointsAtOnePlace) {
   mesh.nodes.conservativeResize(3, num_nodes + 1);
   mesh.nodes.col(num_nodes) = mesh.nodes.col(0);
   pieces_[0].fields.point = {{"place", mesh.nodes}};
-  EXPECT_THROWS_WITH(Read(), "piece_0.vtu: point " + std::to_string(num_nodes) +
-                                 " lies where another point");
+  EXPECT_THROWS_WITH(Read(), "piece_0.vtu: two points are at");
 }
 
 TEST_F(PvtuMeshTest, IsRefusedWhereItIsDamaged) {
@@ -149,6 +155,21 @@ TEST_F(PvtuMeshTest, IsRefusedWhereItIsDamaged) {
   expect(head + "<Piece Source=\"absent.vtu\"/>" + tail,
          "absent.vtu: no such file");
   expect(head + "<Piece/>" + tail, "damaged.pvtu: the file is damaged");
+  // A tetrahedron of points that there are not.
+  folder_.Write(
+      "far.vtu",
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>"
+      "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points>"
+      "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+      "0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>"
+      "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">"
+      "0 1 2 999999</DataArray>"
+      "<DataArray type=\"Int64\" Name=\"offsets\" "
+      "format=\"ascii\">4</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray>"
+      "</Cells></Piece></UnstructuredGrid></VTKFile>");
+  expect(head + "<Piece Source=\"far.vtu\"/>" + tail,
+         "far.vtu: cell 0 names point 999999");
   folder_.Write("cut.vtu", "<VTKFile type=\"Unstruct");
   expect(head + "<Piece Source=\"cut.vtu\"/>" + tail,
          "cut.vtu: the file is damaged");
