@@ -190,8 +190,8 @@ bool ClimbLargeStrainLaws(const Scene& scene, const EstimatorOptions& options,
 }
 
 // Laws of large strains in place of isotropic ones, where they are asked for.
-// Tells whether they end the climb: what is not usable may have another cause,
-// which fits of small strains name.
+// Tells whether they end the climb: what is not usable, or not determined, may
+// have another cause, which fits of small strains name.
 bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
                        Ladder& ladder) {
   if (HasFields(scene.materials) || !AsksForLargeStrains(scene, options) ||
@@ -199,11 +199,15 @@ bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
     return false;
   }
   const Estimate& estimate = ladder.Last();
-  if (estimate.IsUsable() || options.kinematics == Kinematics::kLarge) {
+  const bool are_all_determined =
+      !estimate.Has(FindingCode::kParametersUndetermined);
+  if ((estimate.IsUsable() && are_all_determined) ||
+      options.kinematics == Kinematics::kLarge) {
     ladder.Decide("stopped: laws of large strains were fitted");
     return true;
   }
-  ladder.Decide("went on: " + WhyNotUsable(estimate));
+  ladder.Decide("went on: " + (estimate.IsUsable() ? WhyNotEnough(estimate)
+                                                   : WhyNotUsable(estimate)));
   return false;
 }
 

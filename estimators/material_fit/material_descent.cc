@@ -59,12 +59,12 @@ std::vector<Start> StartsOverPoissonRatios(
 
 // Starts that fit better than their neighbours: descents from them lead to
 // every minimum that shows.
-std::vector<Eigen::VectorXd> LeastOf(const std::vector<Start>& all) {
-  std::vector<Eigen::VectorXd> starts;
+std::vector<Start> LeastOf(const std::vector<Start>& all) {
+  std::vector<Start> starts;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(i > 0 && all[i - 1].cost < all[i].cost) &&
         !(i + 1 < all.size() && all[i + 1].cost < all[i].cost)) {
-      starts.push_back(all[i].variables);
+      starts.push_back(all[i]);
     }
   }
   return starts;
@@ -110,9 +110,13 @@ std::vector<Eigen::VectorXd> StartsAcrossRange(const Scene& scene,
       return a.variables(1) > b.variables(1);
     });
   }
-  std::vector<Eigen::VectorXd> starts = LeastOf(all);
-  starts.erase(std::remove(starts.begin(), starts.end(), known.variables),
-               starts.end());
+  std::vector<Eigen::VectorXd> starts;
+  for (const Start& start : LeastOf(all)) {
+    // Between two ratios, a descent gains less than half of what is left.
+    if (start.variables != known.variables && start.cost < 4 * known.cost) {
+      starts.push_back(start.variables);
+    }
+  }
   return starts;
 }
 
@@ -138,9 +142,9 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           DisplacementMisfit& misfit,
                                           Estimate& estimate) {
   std::vector<std::optional<Eigen::VectorXd>> starts;
-  for (const Eigen::VectorXd& start :
+  for (const Start& start :
        LeastOf(StartsOverPoissonRatios(scene, Loss::kNone, misfit))) {
-    starts.emplace_back(start);
+    starts.emplace_back(start.variables);
   }
   if (starts.empty()) {
     starts.push_back(TypicalStart(misfit));

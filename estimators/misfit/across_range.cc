@@ -89,8 +89,9 @@ Eigen::MatrixXd CovarianceAcrossRange(const Eigen::VectorXd& x,
   Eigen::MatrixXd added = Eigen::MatrixXd::Zero(x.size(), x.size());
   Eigen::VectorXd rows;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const std::vector<WayOfLooks> ways =
-        WaysAcrossRange(misfit.Free(), x, i, std::sqrt(covariance(i, i)));
+    const std::vector<WayOfLooks> ways = WaysAcrossRange(
+        misfit.Free(), x, i,
+        misfit.HasLargeStrains() ? 0 : std::sqrt(covariance(i, i)));
     if (ways.empty() ||
         (rows.size() == 0 && !misfit.Evaluate(minimum, &rows, nullptr))) {
       continue;

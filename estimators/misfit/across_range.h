@@ -16,7 +16,8 @@ namespace elastimate {
 /// The misfit is evaluated with the ratio moved from x by 1/32, 1/8 and 1/2 of
 /// the way to the other end where x is within 2 % of the range of one end, by
 /// 1/4, 1/2 and 3/4 of the way to either end where the error of the ratio is
-/// above 2 % of the range.  All other variables are fitted again.  Let m be the
+/// above 2 % of the range and strains are small (a look at large ones takes
+/// many factorisations).  All other variables are fitted again.  Let m be the
 /// move, and chi^2 the rise of the square sum over that at `minimum`, in units
 /// of `variance`, that of a row.  Where chi^2 < 9, the ratio may be off by
 /// m / sqrt(max(chi^2, 1)).  If the covariance says less than the largest of

@@ -56,7 +56,12 @@ TEST(ReducedFe, AgreesWithTheIterativeFitForFewFactorizations) {
         } else {
           EXPECT_EQ(reduced.status, iterative.status);
         }
-        EXPECT_LE(reduced.work.factorizations, nu < 0.45 ? 2 : 3);
+        // Where the error of nu is large, another one is for values that may
+        // fit as well.
+        const bool is_error_large =
+            reduced.PoissonRatioStandardError().value_or(1) > 0.02;
+        EXPECT_LE(reduced.work.factorizations,
+                  nu < 0.45 && !is_error_large ? 2 : 3);
       }
     }
   }

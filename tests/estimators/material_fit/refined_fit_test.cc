@@ -108,7 +108,9 @@ TEST(RefinedFit, OfAThinBodyIsCertified) {
   options.kinematics = Kinematics::kSmall;
   const Estimate estimate = Fitted(scene, options);
   EXPECT_FALSE(estimate.Has(FindingCode::kFitNotCertified)) << estimate.message;
-  EXPECT_LE(estimate.work.factorizations, 12);
+  // Linear elements of this body lock, so that seven values of nu are looked at
+  // as well, and descents begin at some of them.
+  EXPECT_LE(estimate.work.factorizations, 12 + 7 + 12);
 }
 
 // Linear elements of a bent plate lock, and end next to nu = 1/2.  From there,
