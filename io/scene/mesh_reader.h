@@ -7,8 +7,9 @@
 
 namespace elastimate {
 
-/// Reads the files of kMeshExtensions; the extension may be in capital letters.  The mesh is as CheckMeshFile demands; arrays are as the
-/// file has them.  Throws as ReadScene does.
+/// Reads the files of kMeshExtensions; the extension may be in capital letters.
+/// The mesh is as CheckMeshFile demands; arrays are as the file has them.
+/// Throws as ReadScene does.
 MeshFile ReadMeshFile(const std::filesystem::path& path);
 
 }  // namespace elastimate
