@@ -234,7 +234,7 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
 // Coarse elements that lock may end far from the right nu.  A finer fit that
 // starts there may come to a minimum that is not the best.
 bool MayLeadAstray(const SpaceFit& coarser, const SpaceFit& fit) {
-  // Of the displacements.
+  // Square sums are relative to that of the measured displacements.
   constexpr double kLocked = kLimits.large_residual * kLimits.large_residual;
   constexpr double kNextToMinusOne = -0.98;
   return coarser.SquareSum() > std::max(kLocked, 4 * fit.SquareSum()) ||

@@ -69,22 +69,25 @@ double RoundedUp(double length) {
   return unit * std::ceil(length * (1 + 1e-9) / unit);
 }
 
-void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
-                    const Eigen::VectorXd& distance, double tolerance,
-                    double diagonal, std::vector<std::string>& notices) {
+// Tells what to do with points that lie up to `distance` outside the mesh.
+std::string MendOfPointsOutside(double distance, double diagonal) {
   // Points farther away than this share of the diagonal were not measured on
   // this mesh.
   constexpr double kLargestPart = 0.02;
-  const double needed = distance.size() > 0 ? distance.maxCoeff() : 0;
-  const std::string mend =
-      needed > kLargestPart * diagonal
-          ? "check that the points have the origin, the axes (with their "
-            "signs) and the \"unit\" of the mesh, and are positions before the "
-            "load"
-          : "use the mesh's axes and its \"unit\", leave it out, or give the "
-            "\"tolerance\" " +
-                LengthText(needed > 0 ? RoundedUp(needed) : 0) +
-                ", which takes all points of the file";
+  return distance > kLargestPart * diagonal
+             ? "check that the points have the origin, the axes (with their "
+               "signs) and the \"unit\" of the mesh, and are positions before "
+               "the load"
+             : "use the mesh's axes and its \"unit\", leave it out, or give "
+               "the "
+               "\"tolerance\" " +
+                   LengthText(RoundedUp(distance)) +
+                   ", which takes all points of the file";
+}
+
+void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
+                    const Eigen::VectorXd& distance, double tolerance,
+                    double diagonal, std::vector<std::string>& notices) {
   for (Eigen::Index point = 0; point < distance.size(); ++point) {
     if (distance(point) > tolerance) {
       ThrowInputError(
@@ -92,7 +95,8 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     PositionText(file.positions.col(point)) + " lies " +
                     LengthText(distance(point)) +
                     " outside the mesh, more than the tolerance of " +
-                    LengthText(tolerance) + "; " + mend);
+                    LengthText(tolerance) + "; " +
+                    MendOfPointsOutside(distance.maxCoeff(), diagonal));
     }
   }
   const Eigen::Index num_outside = (distance.array() > 0).count();
