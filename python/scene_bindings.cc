@@ -438,10 +438,10 @@ void BindParameter(py::module_& module) {
                     "[pressure] or, of a ratio, [1]; NaN where unknown.")
       .def_readonly("standard_error", &ParameterEstimate::standard_error,
                     "In the unit of the value; None where unknown.")
-      .def_property_readonly(
-          "is_determined", &ParameterEstimate::IsDetermined,
-          "Whether it is given, or has a standard error of at most a third of a "
-          "modulus or 0.15 of a ratio.")
+      .def_property_readonly("is_determined", &ParameterEstimate::IsDetermined,
+                             "Whether it is given, or has a standard error of "
+                             "at most a third of a "
+                             "modulus or 0.15 of a ratio.")
       .def_property_readonly(
           "interval",
           [](const ParameterEstimate& self)
