@@ -53,7 +53,7 @@ void CheckFirst(const Estimator& estimator, const Scene& scene,
     }
     const std::string why = estimator.WhyUnsupported(of_frame, options);
     if (!why.empty()) {
-      ThrowInputError(series.files.front(),
+      ThrowInputError(series.files[i],
                       std::string(estimator.Name()) + ": " + why);
     }
     return;

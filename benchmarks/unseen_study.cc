@@ -19,6 +19,7 @@
 #include "benchmarks/unseen_summary.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
 
@@ -288,29 +289,34 @@ class TrialsTable {
   Table table_;
 };
 
+std::optional<bool> IsShearModulusHeld(const Trial& trial) {
+  const std::optional<ModulusEstimate>& estimate = trial.estimate.shear_modulus;
+  if (!estimate) {
+    return std::nullopt;
+  }
+  return std::abs(estimate->value - trial.truth.ShearModulus()) <=
+         kTwoSidedErrors * estimate->standard_error;
+}
+
 UnseenOutcome OutcomeOf(const Specimen& specimen, const Setting& setting,
                         const Trial& trial, double processor_seconds) {
   const Estimate& estimate = trial.estimate;
-  return {
-      setting.World(),
-      std::string(HalfName(specimen.shape.half)),
-      kDeviations[setting.deviation],
-      estimate.estimator,
-      trial.seed,
-      estimate.IsUsable(),
-      estimate.IsUsable() &&
-          std::all_of(estimate.parameters.begin(), estimate.parameters.end(),
-                      [](const ParameterEstimate& parameter) {
-                        return parameter.IsDetermined();
-                      }),
-      estimate.IsUsable() && IsWrong(trial),
-      CoverageOf(trial),
-      trial.YoungsModulusError(),
-      trial.PoissonRatioError(),
-      estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
-          trial.truth.youngs_modulus,
-      estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
-      processor_seconds};
+  return {setting.World(),
+          std::string(HalfName(specimen.shape.half)),
+          kDeviations[setting.deviation],
+          estimate.estimator,
+          trial.seed,
+          estimate.IsUsable(),
+          estimate.DeterminesAll(),
+          estimate.IsUsable() && IsWrong(trial),
+          CoverageOf(trial),
+          IsShearModulusHeld(trial),
+          trial.YoungsModulusError(),
+          trial.PoissonRatioError(),
+          estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
+              trial.truth.youngs_modulus,
+          estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
+          processor_seconds};
 }
 
 class UnseenStudy {

@@ -113,6 +113,10 @@ struct Regret {
   }
 };
 
+bool DeterminesShearModulus(const UnseenOutcome& outcome) {
+  return outcome.is_shear_modulus_held.has_value();
+}
+
 }  // namespace
 
 std::optional<Interval> IntervalOf(const Estimate& estimate,
@@ -150,8 +154,9 @@ Table UnseenCells(const std::vector<UnseenOutcome>& outcomes) {
   Table table(
       "unseen_cells",
       {"world", "estimator", "displacement_deviation [1]", "half", "trials [1]",
-       "ok_share [1]", "determined_share [1]", "youngs_modulus_coverage [1]",
-       "poisson_ratio_coverage [1]", "dishonest_share [1]",
+       "ok_share [1]", "determined_share [1]", "shear_modulus_share [1]",
+       "youngs_modulus_coverage [1]", "poisson_ratio_coverage [1]",
+       "shear_modulus_coverage [1]", "dishonest_share [1]",
        "median_youngs_modulus_error [1]", "median_poisson_ratio_error [1]",
        "median_youngs_modulus_standard_error [1]",
        "median_poisson_ratio_standard_error [1]"});
@@ -165,11 +170,17 @@ Table UnseenCells(const std::vector<UnseenOutcome>& outcomes) {
     Outcomes ok;
     std::copy_if(own.begin(), own.end(), std::back_inserter(ok),
                  [](const UnseenOutcome* outcome) { return outcome->is_ok; });
+    Outcomes of_shear_modulus;
+    std::copy_if(own.begin(), own.end(), std::back_inserter(of_shear_modulus),
+                 [](const UnseenOutcome* outcome) {
+                   return DeterminesShearModulus(*outcome);
+                 });
     table.AddRow(
         {world, estimator, DeviationCell(deviation), half,
          std::int64_t(own.size()),
          Share(own, [](const UnseenOutcome& o) { return o.is_ok; }),
          Share(own, [](const UnseenOutcome& o) { return o.is_determined; }),
+         Share(own, DeterminesShearModulus),
          Share(ok,
                [](const UnseenOutcome& o) {
                  return o.coverage.youngs_modulus.value_or(false);
@@ -178,6 +189,8 @@ Table UnseenCells(const std::vector<UnseenOutcome>& outcomes) {
                [](const UnseenOutcome& o) {
                  return o.coverage.poisson_ratio.value_or(false);
                }),
+         Share(of_shear_modulus,
+               [](const UnseenOutcome& o) { return *o.is_shear_modulus_held; }),
          Share(own, [](const UnseenOutcome& o) { return o.is_dishonest; }),
          Median(ok, &UnseenOutcome::youngs_modulus_error),
          Median(ok, &UnseenOutcome::poisson_ratio_error),

@@ -37,6 +37,9 @@ struct UnseenOutcome {
   /// Whether it is ok, and IsWrong by its standard errors alone.
   bool is_dishonest;
   Coverage coverage;
+  /// Whether the 95 % interval of the shear modulus holds it; empty unless
+  /// that is determined, and neither E nor nu.
+  std::optional<bool> is_shear_modulus_held;
   // Errors are relative to E and absolute in nu, as in TrialCells; NaN where
   // unknown.
   double youngs_modulus_error;
@@ -59,10 +62,10 @@ inline constexpr double kWantedStandardErrors = 2;
 
 /// Makes the table unseen_cells.  It has rows for each world, estimator,
 /// deviation and half, and for all deviations and both halves ("all").  A row
-/// gives the share of ok trials and of those that determine E and nu, the share
-/// of ok ones whose intervals hold the
-/// truth (a missing interval does not), the share of dishonest trials among
-/// all, and medians over the ok ones.
+/// gives the share of ok trials, of those that determine E and nu and of those
+/// that determine the shear modulus alone, the share of these whose intervals
+/// hold the truth (a missing interval does not), the share of dishonest trials
+/// among all, and medians over the ok ones.
 Table UnseenCells(const std::vector<UnseenOutcome>& outcomes);
 
 /// Makes the table unseen_regret.  It has rows for each world, deviation and

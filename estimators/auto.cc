@@ -199,10 +199,7 @@ bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
     return false;
   }
   const Estimate& estimate = ladder.Last();
-  const bool are_all_determined =
-      !estimate.Has(FindingCode::kParametersUndetermined);
-  if ((estimate.IsUsable() && are_all_determined) ||
-      options.kinematics == Kinematics::kLarge) {
+  if (estimate.DeterminesAll() || options.kinematics == Kinematics::kLarge) {
     ladder.Decide("stopped: laws of large strains were fitted");
     return true;
   }

@@ -174,6 +174,26 @@ Scene WithThreeForces(const Scene& scene) {
   return three;
 }
 
+// Maps the square section of a box to a disc.
+Mesh CylinderMesh(int cells_per_side) {
+  constexpr double kPi = 3.14159265358979323846;
+  Mesh mesh = BoxMesh({cells_per_side, cells_per_side, 2}, {2, 2, 1});
+  for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
+    const double a = mesh.nodes(0, i) - 1;
+    const double b = mesh.nodes(1, i) - 1;
+    const double radius = std::max(std::abs(a), std::abs(b));
+    double angle = 0;
+    if (std::abs(a) >= std::abs(b) && radius > 0) {
+      angle = (a > 0 ? 0 : kPi) + kPi / 4 * b / a;
+    } else if (radius > 0) {
+      angle = (b > 0 ? kPi / 2 : -kPi / 2) - kPi / 4 * a / b;
+    }
+    mesh.nodes(0, i) = radius * std::cos(angle);
+    mesh.nodes(1, i) = radius * std::sin(angle);
+  }
+  return mesh;
+}
+
 Scene UnderBodyForce(Scene scene) {
   scene.load_cases.resize(1);
   scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(100, 20, -300)}};

@@ -22,6 +22,10 @@ Mesh BoxMesh(const Eigen::Vector3i& cells, const Eigen::Vector3d& size);
 /// and tapers it.
 Mesh Distorted(Mesh mesh);
 
+/// Returns a cylinder of radius 1 and height 1 around the z axis, whose outer
+/// nodes lie on it, 4 x cells_per_side of them at each height.
+Mesh CylinderMesh(int cells_per_side);
+
 /// Returns a scene of this mesh with one load case of nodal forces on every
 /// free node.  Nodes are held where z = 0 in `reference`, which is the mesh
 /// before any distortion.

@@ -199,6 +199,23 @@ Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
   return facets;
 }
 
+Eigen::VectorXi ElementsOfFacets(const Mesh& mesh,
+                                 const Eigen::MatrixXi& facets) {
+  Eigen::VectorXi elements(facets.cols());
+  int element = 0;
+  const auto has = [&](int node) {
+    return (mesh.elements.col(element).array() == node).any();
+  };
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    const auto facet = facets.col(i);
+    while (!std::all_of(facet.begin(), facet.end(), has)) {
+      ++element;
+    }
+    elements(i) = element;
+  }
+  return elements;
+}
+
 Eigen::MatrixXi BoundaryFacetsWhere(
     const Mesh& mesh, const std::function<bool(int)>& accepts_node) {
   const Eigen::MatrixXi all = BoundaryFacets(mesh);

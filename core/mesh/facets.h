@@ -21,6 +21,11 @@ namespace elastimate {
 /// O(num_elements).
 [[nodiscard]] Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
 
+/// The element that each of these facets of BoundaryFacets belongs to, which
+/// are in its order; middle nodes may be left out.  O(num_elements).
+[[nodiscard]] Eigen::VectorXi ElementsOfFacets(const Mesh& mesh,
+                                               const Eigen::MatrixXi& facets);
+
 /// The facets of BoundaryFacets, in their order, all of whose nodes are
 /// accepted.  O(num_elements).
 [[nodiscard]] Eigen::MatrixXi BoundaryFacetsWhere(

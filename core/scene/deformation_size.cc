@@ -1,10 +1,12 @@
 #include "elastimate/core/scene/deformation_size.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -281,6 +283,38 @@ Eigen::MatrixXd PointsOfTheVolume(const Scene& scene, const LoadCase& load_case,
                      scene.mesh.nodes);
 }
 
+// Returns the normal of the plane in which all places lie; empty where there is
+// none.
+std::optional<Eigen::Vector3d> NormalOfPlane(const std::vector<Observed>& all) {
+  constexpr double kFlat = 1e-4;  // Of the largest extent.
+  Eigen::Index count = 0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Observed& observed : all) {
+    count += observed.positions.cols();
+    middle += observed.positions.rowwise().sum();
+  }
+  middle /= static_cast<double>(count);
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Observed& observed : all) {
+    const Eigen::MatrixXd arms = observed.positions.colwise() - middle;
+    squares += arms * arms.transpose();
+  }
+  const SymmetricEigenDecomposition axes = DecomposeSymmetric(squares);
+  return axes.values(0) < kFlat * kFlat * axes.values(2)
+             ? std::optional<Eigen::Vector3d>(axes.vectors.col(0))
+             : std::nullopt;
+}
+
+// What is observed in a plane says nothing of its normal, which is taken to
+// stay a unit normal of the deformed plane.
+void CompleteByNormal(const Eigen::Vector3d& normal, Eigen::MatrixXd& f) {
+  const Eigen::Vector3d first = normal.unitOrthogonal();
+  const Eigen::Vector3d second = normal.cross(first);
+  const Eigen::Vector3d deformed =
+      Eigen::Vector3d(f * first).cross(Eigen::Vector3d(f * second));
+  f += (deformed.normalized() - f * normal) * normal.transpose();
+}
+
 // Returns F at points of the volume; empty where too little was observed.
 std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
                                                   const LoadCase& load_case) {
@@ -292,7 +326,9 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
           : Interpolate(scene.mesh, load_case.points.points, scene.mesh.nodes);
   std::vector<Eigen::MatrixXd> gradients;
   Eigen::MatrixXd at;
-  for (const Observed& all : ObservedValues(scene.mesh, load_case, points)) {
+  const std::vector<Observed> observed_values =
+      ObservedValues(scene.mesh, load_case, points);
+  for (const Observed& all : observed_values) {
     const Observed observed = WithoutStrayValues(frame, all);
     if (at.size() == 0) {
       at = PointsOfTheVolume(scene, load_case, points, observed);
@@ -308,6 +344,13 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
       for (Eigen::Index i = 0; i < at.cols(); ++i) {
         gradients[i].row(observed.components[c]) +=
             of_components[c].col(i).transpose();
+      }
+    }
+  }
+  if (dimension == 3) {
+    if (const auto normal = NormalOfPlane(observed_values)) {
+      for (Eigen::MatrixXd& f : gradients) {
+        CompleteByNormal(*normal, f);
       }
     }
   }

@@ -1,6 +1,7 @@
 #include "elastimate/core/solvers/cholesky.h"
 
 #include <cholmod.h>
+#include <omp.h>
 
 #include <Eigen/SparseCore>
 #include <cassert>
@@ -12,8 +13,32 @@
 #include "elastimate/core/solvers/cholmod_view.h"
 #include "elastimate/core/solvers/nested_dissection.h"
 
+// Of OpenBLAS: 2 where its threads are those of OpenMP.  Null for other BLAS.
+extern "C" [[gnu::weak]] int openblas_get_parallel();
+
 namespace elastimate {
 namespace {
+
+// CHOLMOD asks for four threads of OpenMP in a small loop for each supernode,
+// however many processors there are, and waking them takes longer than the
+// loops do.  While this lives, such loops have one thread.  Where the threads
+// of BLAS are those of OpenMP, nothing changes, since dense products need them.
+class OneThreadInLoops {
+ public:
+  OneThreadInLoops() : levels_(omp_get_max_active_levels()) {
+    constexpr int kOpenMp = 2;
+    if (openblas_get_parallel != nullptr &&
+        openblas_get_parallel() != kOpenMp) {
+      omp_set_max_active_levels(0);
+    }
+  }
+  ~OneThreadInLoops() { omp_set_max_active_levels(levels_); }
+  OneThreadInLoops(const OneThreadInLoops&) = delete;
+  OneThreadInLoops& operator=(const OneThreadInLoops&) = delete;
+
+ private:
+  int levels_;
+};
 
 // Ratios of pivots (a cheap condition estimate): below the first a solution has
 // no correct digit, below the second rounding may have made the smallest pivot,
@@ -99,7 +124,10 @@ bool Cholesky::Factorize(const Eigen::VectorXd& values) {
   if (!values.allFinite()) {
     return false;
   }
-  cholmod_l_factorize(&matrix, workspace_->factor, common);
+  {
+    const OneThreadInLoops one_thread;
+    cholmod_l_factorize(&matrix, workspace_->factor, common);
+  }
   ThrowIfOutOfMemory(*common);
   if (common->status != CHOLMOD_OK) {
     return false;

@@ -49,6 +49,10 @@ bool ParameterEstimate::IsDetermined() const {
                              : kLimits.largest_poisson_ratio_error));
 }
 
+bool ModulusEstimate::IsDetermined() const {
+  return standard_error <= kLimits.largest_youngs_modulus_error * value;
+}
+
 std::string RegionsLabel(const std::vector<int>& regions) {
   constexpr std::size_t kMostNamed = 3;
   const std::size_t num_named =
@@ -137,6 +141,7 @@ void Estimate::Fail(const Finding& finding) {
   for (AxisEstimate& axis : axes) {
     axis.standard_error.reset();
   }
+  shear_modulus.reset();
   error_budget.noise.resize(0);
   why_no_standard_error = "the estimate is not usable";
 }
@@ -166,7 +171,14 @@ std::optional<double> Estimate::PoissonRatioStandardError() const {
   return FiniteOrNothing(std::sqrt(covariance(1, 1)));
 }
 
+double Estimate::ShearModulus() const {
+  return shear_modulus ? shear_modulus->value : elasticity.ShearModulus();
+}
+
 std::optional<double> Estimate::ShearModulusStandardError() const {
+  if (shear_modulus) {
+    return shear_modulus->standard_error;
+  }
   const Eigen::RowVector2d row = ShearAndBulkJacobian(elasticity).row(0);
   return FiniteOrNothing(std::sqrt(row * covariance * row.transpose()));
 }

@@ -66,6 +66,15 @@ struct ParameterEstimate {
   bool IsDetermined() const;
 };
 
+/// A modulus that is no parameter of a law, and follows from them.
+struct ModulusEstimate {
+  double value;           ///< [pressure]
+  double standard_error;  ///< [pressure]
+
+  /// Whether its standard error is small enough to be of use (Limits).
+  bool IsDetermined() const;
+};
+
 /// The stiffness of a material that is not isotropic, in its own frame and the
 /// notation of Voigt: 6 x 6, in the plane 3 x 3 [pressure].
 struct StiffnessEstimate {
@@ -228,6 +237,10 @@ struct Estimate {
   /// The axis of each material whose axis was to be found, by its parameters.
   std::vector<AxisEstimate> axes;
 
+  /// mu of one isotropic material whose E and nu the data do not determine,
+  /// while they determine mu; empty for others (FindShearModulus).
+  std::optional<ModulusEstimate> shear_modulus;
+
   /// What the errors come from.
   ErrorBudget error_budget;
   /// How large the measured deformation is (MeasureDeformation).
@@ -312,6 +325,10 @@ struct Estimate {
   double seconds = 0;  ///< Time of the whole estimator.
 
   bool IsUsable() const { return status == Status::kOk; }
+  /// Whether it is usable, and the data determine all parameters.
+  bool DeterminesAll() const {
+    return IsUsable() && !Has(FindingCode::kParametersUndetermined);
+  }
   /// Whether something of this code was found.
   bool Has(FindingCode code) const;
   /// Whether the error has this code.
@@ -337,8 +354,10 @@ struct Estimate {
   std::optional<double> PoissonRatioStandardError() const;
   /// Correlation of the errors of E and nu; empty when unknown.
   std::optional<double> Correlation() const;
-  /// The standard errors of mu and of 1 / kappa, to first order; empty unless
-  /// the covariance of both E and nu is known.
+  /// mu = E / (2 (1 + nu)), or `shear_modulus` where there is one.
+  double ShearModulus() const;
+  /// The standard errors of mu and of 1 / kappa, to first order but for that of
+  /// `shear_modulus`; empty unless the covariance of both E and nu is known.
   std::optional<double> ShearModulusStandardError() const;
   std::optional<double> BulkComplianceStandardError() const;
 

@@ -48,6 +48,7 @@ constexpr Row kRows[] = {
     {"parameters_on_bounds", FindingCode::kParametersOnBounds},
     {"parameters_near_limits", FindingCode::kParametersNearLimits},
     {"discretization_error", FindingCode::kDiscretizationError},
+    {"flat_facets", FindingCode::kFlatFacets},
     {"mesh_error_unknown", FindingCode::kMeshErrorUnknown},
     {"computed_by_linear_elements", FindingCode::kComputedByLinearElements},
     {"supports_end_within_elements", FindingCode::kSupportsEndWithinElements},

@@ -58,6 +58,7 @@ enum class FindingCode {
   kParametersOnBounds,
   kParametersNearLimits,
   kDiscretizationError,
+  kFlatFacets,
   kMeshErrorUnknown,
   kComputedByLinearElements,
   kSupportsEndWithinElements,

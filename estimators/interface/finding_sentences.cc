@@ -273,6 +273,16 @@ Finding ParametersOfOneUndetermined(
                "the data do not determine " + FirstOf(parameters), kGiveMore);
 }
 
+Finding ShearModulusOnly(const std::vector<std::string>& parameters,
+                         const ModulusEstimate& shear_modulus) {
+  return Error(
+      FindingCode::kParametersUndetermined,
+      "the data determine the shear modulus = " +
+          ValueWithError(shear_modulus.value, shear_modulus.standard_error) +
+          ", but not " + FirstOf(parameters),
+      kGiveMore);
+}
+
 Finding ParametersUndeterminedByElements(
     const std::vector<std::string>& parameters) {
   return Error(
@@ -762,6 +772,17 @@ Finding DiscretizationErrorFinding(const Estimate& estimate) {
                      LargestErrors(estimate.error_budget.discretization,
                                    estimate.parameters),
                  "use a finer mesh if you need a smaller error");
+}
+
+Finding FacetsOfRoundBody(double error) {
+  return Warning(FindingCode::kFlatFacets,
+                 "the facets of the mesh are flat: where the specimen is "
+                 "round, moduli come out about " +
+                     Percent(std::abs(error)) + " too " +
+                     (error > 0 ? "large" : "small") +
+                     ", which no error bar includes",
+                 "use smaller facets or curved elements, unless the specimen "
+                 "has these facets");
 }
 
 Finding MeshErrorUnknown() {

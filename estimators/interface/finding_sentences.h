@@ -49,6 +49,9 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
 /// E and nu are those of one isotropic material.
 Finding ParametersOfOneUndetermined(const std::vector<std::string>& parameters);
+/// They determine the shear modulus, as torsion does.
+Finding ShearModulusOnly(const std::vector<std::string>& parameters,
+                         const ModulusEstimate& shear_modulus);
 /// Says so where most of the errors is what the elements miss.
 Finding ParametersUndeterminedByElements(
     const std::vector<std::string>& parameters);
@@ -168,6 +171,9 @@ Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);
 Finding SupportsEndWithinElements(const ParameterErrors& errors,
                                   const Estimate& estimate);
 /// Precondition: there is a discretisation error.
+/// For a mesh whose facets are flat where the specimen may be round: `error` is
+/// that of the moduli, positive where they are too large.
+Finding FacetsOfRoundBody(double error);
 Finding DiscretizationErrorFinding(const Estimate& estimate);
 /// Measured displacements and a method that sees no mesh error.
 Finding MeshErrorUnknown();

@@ -175,6 +175,9 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
   if (AreAxesOnly(estimate)) {
     return AxisUndetermined(undetermined);
   }
+  if (estimate.shear_modulus) {
+    return ShearModulusOnly(undetermined, *estimate.shear_modulus);
+  }
   const auto is_on_bound = [&](const ParameterEstimate& parameter) {
     return parameter.is_modulus && parameter.standard_error &&
            !parameter.IsDetermined() && IsOnBound(parameter, estimate);
@@ -320,11 +323,11 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
   }
 }
 
-// Whether a modulus is determined, and the errors of all other parameters are
-// finite.  An undetermined axis, or a parameter on a bound, makes all
-// parameters doubtful.
+// Whether a modulus is determined, which may be one that is no parameter, and
+// the errors of all other parameters are finite.  An undetermined axis, or a
+// parameter on a bound, makes all parameters doubtful.
 bool AreSomeDetermined(const Estimate& estimate) {
-  bool are_some = false;
+  bool are_some = estimate.shear_modulus.has_value();
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
     if (const AxisEstimate* const axis = AxisOfParameter(estimate, i)) {

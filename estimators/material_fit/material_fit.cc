@@ -7,8 +7,10 @@
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/certified_descent.h"
+#include "elastimate/estimators/material_fit/facet_error.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
 #include "elastimate/estimators/material_fit/refined_fit.h"
+#include "elastimate/estimators/material_fit/shear_modulus.h"
 
 namespace elastimate {
 namespace {
@@ -74,22 +76,17 @@ class MaterialFitPreparation : public Preparation {
 
   Estimate Run(const Scene& scene) override {
     MaterialFit fit = FitMaterialsFrom(start_, scene, options_, descent_);
-    if (start_ && !IsGoodStart(fit.estimate)) {
+    if (start_ && !fit.estimate.DeterminesAll()) {
       const Work work = fit.estimate.work;
       fit = FitMaterialsFrom(std::nullopt, scene, options_, descent_);
       fit.estimate.work = fit.estimate.work + work;
     }
-    start_ = IsGoodStart(fit.estimate) ? fit.Variables() : std::nullopt;
+    start_ = fit.estimate.DeterminesAll() ? fit.Variables() : std::nullopt;
     return fit.estimate;
   }
   bool TakesOtherLoadCases() const override { return true; }
 
  private:
-  static bool IsGoodStart(const Estimate& estimate) {
-    return estimate.IsUsable() &&
-           !estimate.Has(FindingCode::kParametersUndetermined);
-  }
-
   const EstimatorOptions& options_;
   Descent descent_;
   std::optional<Eigen::VectorXd> start_;
@@ -128,6 +125,13 @@ MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
   if (fit.has_rival_axis && fit.estimate.IsUsable()) {
     fit.estimate.Fail(OtherAxisAlike());
   }
+  WarnOfFlatFacets(scene, fit.displacement, fit.estimate);
+  FindShearModulus(
+      scene, options,
+      [&](const EstimatorOptions& others) {
+        return FitMaterialsFrom(std::nullopt, scene, others, descent).estimate;
+      },
+      fit.estimate);
   if (HasUnknownMotion(scene)) {
     fit.estimate.fitted_displacement = fit.displacement;
     fit.estimate.cameras = fit.cameras;

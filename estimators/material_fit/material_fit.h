@@ -21,7 +21,9 @@ namespace elastimate {
 /// it takes the scene; the better minimum is kept.  Outliers are left out and
 /// the others fitted again, until they are those of the fit without them
 /// (OutlierSearch); covariance as by DescribeMinimum.  Of parameters on bounds,
-/// the covariance is that without bounds.
+/// the covariance is that without bounds.  Where neither E nor nu of one
+/// isotropic material is determined, the shear modulus may be
+/// (FindShearModulus).
 ///
 /// Where an axis is to be found, descents start from several (StartsOverAxes).
 /// The estimate is not usable where another axis explains the data nearly as

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/observed_displacements.h"
@@ -13,6 +14,62 @@ namespace {
 
 // Steps below this part of a standard error end a search.
 constexpr double kSmallestStepOfErrors = 1e-2;
+
+// Next to nu = 1/2 and nu = -1 displacements change with the distance to these
+// ends.  Steps of nu itself would end there at once, and take many to come
+// back.  So the search takes its steps in ln((1 + nu) / (1/2 - nu)) instead.
+class SearchVariables {
+ public:
+  explicit SearchVariables(const FreeParameters& free) {
+    for (Eigen::Index i = 0; i < free.Size(); ++i) {
+      is_ratio_.push_back(free.Free(i).law_parameter->name == "poisson_ratio");
+    }
+  }
+
+  Eigen::VectorXd Of(Eigen::VectorXd variables) const {
+    for (Eigen::Index i = 0; i < variables.size(); ++i) {
+      if (is_ratio_[i]) {
+        variables(i) = OfRatio(variables(i));
+      }
+    }
+    return variables;
+  }
+  std::vector<Bounds> Of(std::vector<Bounds> bounds) const {
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+      if (is_ratio_[i]) {
+        bounds[i] = {OfRatio(*bounds[i].lower), OfRatio(*bounds[i].upper)};
+      }
+    }
+    return bounds;
+  }
+  Eigen::VectorXd Back(Eigen::VectorXd searched) const {
+    for (Eigen::Index i = 0; i < searched.size(); ++i) {
+      if (is_ratio_[i]) {
+        searched(i) = 0.5 - 1.5 / (1 + std::exp(searched(i)));
+      }
+    }
+    return searched;
+  }
+  // d variables / d searched, a diagonal.
+  Eigen::VectorXd Slopes(const Eigen::VectorXd& variables) const {
+    Eigen::VectorXd slopes = Eigen::VectorXd::Ones(variables.size());
+    for (Eigen::Index i = 0; i < variables.size(); ++i) {
+      if (is_ratio_[i]) {
+        slopes(i) = (1 + variables(i)) * (0.5 - variables(i)) / 1.5;
+      }
+    }
+    return slopes;
+  }
+
+ private:
+  static double OfRatio(double nu) {
+    const double within =
+        std::clamp(nu, kSmallestPoissonRatio, kLargestPoissonRatio);
+    return std::log((1 + within) / (0.5 - within));
+  }
+
+  std::vector<bool> is_ratio_;
+};
 
 BoundedMinimum Search(const EstimatorOptions& estimator_options,
                       const Eigen::VectorXd& start, Distance distance,
@@ -28,7 +85,7 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
   options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
                                static_cast<double>(misfit.NumRows());
-  options.gradient_tolerance = 1e-14;
+  options.gradient_tolerance = 1e-20;
   options.parameter_tolerance = 1e-11;
   options.logging_type = ceres::SILENT;
   // A trial without an equilibrium costs more than a step of the search, and a
@@ -38,15 +95,23 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
     failures_left = 8;
     options.max_num_line_search_step_size_iterations = 5;
   }
-  return MinimizeOverVariables(
-      [&](const Eigen::VectorXd& x, Eigen::VectorXd* residual,
+  const SearchVariables searched(misfit.Free());
+  BoundedMinimum minimum = MinimizeOverVariables(
+      [&](const Eigen::VectorXd& at, Eigen::VectorXd* residual,
           Eigen::MatrixXd* jacobian) {
+        const Eigen::VectorXd x = searched.Back(at);
         const bool is_solved =
             failures_left > 0 && misfit.Evaluate(x, residual, jacobian);
         failures_left -= is_solved ? 0 : 1;
+        if (is_solved && jacobian != nullptr) {
+          *jacobian = (*jacobian * searched.Slopes(x).asDiagonal()).eval();
+        }
         return is_solved;
       },
-      misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
+      misfit.NumRows(), searched.Of(misfit.Free().VariableBounds()),
+      searched.Of(start), options);
+  minimum.variables = searched.Back(minimum.variables);
+  return minimum;
 }
 
 // Whether a search from far has ended at a minimum that is known.

@@ -55,24 +55,6 @@ struct Surface {
   std::vector<int> nodes;    // The nodes of the mesh.
 };
 
-// Returns the element that each facet of BoundaryFacets belongs to, in whose
-// order they are.
-Eigen::VectorXi OwnersOf(const Mesh& mesh, const Eigen::MatrixXi& facets) {
-  Eigen::VectorXi owners(facets.cols());
-  int element = 0;
-  const auto has = [&](int node) {
-    return (mesh.elements.col(element).array() == node).any();
-  };
-  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
-    const auto facet = facets.col(i);
-    while (!std::all_of(facet.begin(), facet.end(), has)) {
-      ++element;
-    }
-    owners(i) = element;
-  }
-  return owners;
-}
-
 Surface SurfaceOf(const Mesh& mesh) {
   Surface surface;
   const ElementTopology& topology = mesh.Topology();
@@ -82,7 +64,7 @@ Surface SurfaceOf(const Mesh& mesh) {
                                                   int(mesh.NumElements()) - 1);
   } else {
     surface.facets = BoundaryFacets(mesh).topRows(topology.NumVerticesOfFace());
-    surface.elements = OwnersOf(mesh, surface.facets);
+    surface.elements = ElementsOfFacets(mesh, surface.facets);
   }
   std::vector<int> places(mesh.NumNodes(), -1);
   for (int& node : surface.facets.reshaped()) {

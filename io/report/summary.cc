@@ -119,15 +119,21 @@ void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
                    : WithError(elasticity.poisson_ratio,
                                estimate.PoissonRatioStandardError()),
           text);
-  if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
+  const bool is_at_limit =
+      estimate.poisson_ratio_interval && ReachesLimit(estimate);
+  if (is_at_limit) {
     AddLine("95 % interval of nu",
             NumberText(estimate.poisson_ratio_interval->lower, 4) + " to " +
                 NumberText(estimate.poisson_ratio_interval->upper, 4),
             text);
+  }
+  if (is_at_limit || estimate.shear_modulus) {
     AddLine("shear modulus mu",
-            WithError(elasticity.ShearModulus(),
+            WithError(estimate.ShearModulus(),
                       estimate.ShearModulusStandardError()),
             text);
+  }
+  if (is_at_limit && !estimate.shear_modulus) {
     AddLine("1 / bulk modulus",
             WithError(elasticity.BulkCompliance(),
                       estimate.BulkComplianceStandardError()),

@@ -272,7 +272,7 @@ TEST_F(Series, IsRefusedWhereItDoesNotBelong) {
          "--out=a.vtu cannot be used");
   Refuse("estimate scene.json --estimator=auto --order=2", "--order=2");
   Refuse("estimate scene.json --estimator=reduced-fe",
-         "frame_5.csv: reduced-fe: ");
+         "frame_6.csv: reduced-fe: ");
   Refuse("estimate scene.json --estimator=auto --series=frame_7.csv",
          "would overwrite a frame");
   Refuse("estimate scene.json --estimator=auto --series=a --json=a",

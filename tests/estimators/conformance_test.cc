@@ -396,9 +396,17 @@ TEST_P(Conformance, TheErrorBudgetMakesUpTheStandardErrors) {
 
 TEST_P(Conformance, SaysWhatPureShearDetermines) {
   const Estimate estimate = Run(ShearedBlock());
+  // Estimators that fit displacements look for it themselves.
+  if (estimate.shear_modulus) {
+    EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
+    EXPECT_TRUE(estimate.Has(FindingCode::kParametersUndetermined));
+    EXPECT_NEAR(estimate.shear_modulus->value, 5e4 / 2.6, 1e-6 * 5e4);
+    EXPECT_FALSE(estimate.parameters[0].IsDetermined());
+    EXPECT_FALSE(estimate.parameters[1].IsDetermined());
+    return;
+  }
   EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
   EXPECT_FALSE(estimate.IsUsable());
-  // The shear modulus is mu = 5e4 / 2.6.
   EXPECT_NE(estimate.message.find("the shear modulus = 19230.8"),
             std::string::npos)
       << estimate.message;

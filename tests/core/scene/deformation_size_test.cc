@@ -70,6 +70,24 @@ TEST(DeformationSize, OfABentBarIsTheRotationOfItsEnd) {
   EXPECT_GT(size.strain, curvature / 4);
 }
 
+// Of a face that turns, points in it do not show that the bar beneath turns,
+// too.
+TEST(DeformationSize, OfAPlaneIsWithinIt) {
+  const double curvature = 20 * kDegree / 8;
+  Scene scene = BarMovedBy([&](const Eigen::Vector3d& x) {
+    const double angle = curvature * x(2);
+    const double radius = 1 / curvature - (x(0) - 0.5);
+    return Eigen::Vector3d(
+        0.5 + 1 / curvature - radius * std::cos(angle) - x(0), 0,
+        radius * std::sin(angle) - x(2));
+  });
+  scene.load_cases[0].observed =
+      (scene.mesh.nodes.row(0).array() < 1e-9).replicate(3, 1);
+  const DeformationSize size = MeasureDeformation(scene);
+  EXPECT_NEAR(size.strain, curvature / 2, 0.1 * curvature);
+  EXPECT_NEAR(size.rotation, 0.95 * 20 * kDegree, 1 * kDegree);
+}
+
 TEST(DeformationSize, IsNotMadeByNoise) {
   Scene scene = BarMovedBy([](const Eigen::Vector3d& x) {
     return Eigen::Vector3d(Stretched(x) / 50);

@@ -38,6 +38,7 @@ std::vector<Finding> OfSolutions() {
           SearchFailed("reason"),
           NoConvergence(1000),
           FitNotCertified(),
+          FacetsOfRoundBody(kLong),
           ErrorsMissing("name", "a standard error of nu of region 1000"),
           DisplacementsOpposeLoads(),
           YoungsModulusDiverges(),
@@ -47,7 +48,8 @@ std::vector<Finding> OfSolutions() {
 }
 
 std::vector<Finding> OfUndeterminedParameters() {
-  return {OneCombination({100, 0.25}, {1 / 1.25, 1})};
+  return {OneCombination({100, 0.25}, {1 / 1.25, 1}),
+          ShearModulusOnly({"E (+- 1000 %)", "nu (+- 0.91)"}, {kLong, kLong})};
 }
 
 std::vector<Finding> OfResiduals() {

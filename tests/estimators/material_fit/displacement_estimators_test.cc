@@ -67,8 +67,13 @@ TEST_P(DisplacementEstimators, ALockedPlateDoesNotDetermineNu) {
     const Estimate estimate = Run(scene, {});
     if (estimate.IsUsable()) {
       EXPECT_FALSE(estimate.parameters[1].IsDetermined());
-      EXPECT_NEAR(estimate.elasticity.youngs_modulus, 1e9,
-                  2 * *estimate.YoungsModulusStandardError());
+      const Interval& interval = *estimate.parameters[0].interval;
+      EXPECT_LT(interval.lower, 1e9);
+      EXPECT_GT(interval.upper, 1e9);
+      if (estimate.shear_modulus) {
+        EXPECT_NEAR(estimate.shear_modulus->value, 1e9 / 2.6,
+                    2 * estimate.shear_modulus->standard_error);
+      }
     }
   }
 }
@@ -214,7 +219,7 @@ TEST_P(DisplacementEstimators, ANarrowEDeterminesACollinearNu) {
     SCOPED_TRACE(seed);
     Scene scene = testing::ShearedBlock();
     AddNoise(1e-3, seed, scene);
-    EXPECT_EQ(Run(scene, {}).status, Status::kNotIdentifiable);
+    EXPECT_FALSE(Run(scene, {}).DeterminesAll());
     EstimatorOptions options;
     options.youngs_modulus = {4.95e4, 5.05e4};
     const Estimate estimate = Run(scene, options);
