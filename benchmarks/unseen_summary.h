@@ -63,9 +63,10 @@ inline constexpr double kWantedStandardErrors = 2;
 /// Makes the table unseen_cells.  It has rows for each world, estimator,
 /// deviation and half, and for all deviations and both halves ("all").  A row
 /// gives the share of ok trials, of those that determine E and nu and of those
-/// that determine the shear modulus alone, the share of these whose intervals
-/// hold the truth (a missing interval does not), the share of dishonest trials
-/// among all, and medians over the ok ones.
+/// that determine the shear modulus alone; the share of intervals that hold the
+/// truth, of E and nu among the ok ones (a missing interval does not), of the
+/// shear modulus among those that determine it alone; the share of dishonest
+/// trials among all, and medians over the ok ones.
 Table UnseenCells(const std::vector<UnseenOutcome>& outcomes);
 
 /// Makes the table unseen_regret.  It has rows for each world, deviation and

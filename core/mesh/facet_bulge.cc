@@ -1,7 +1,6 @@
 #include "elastimate/core/mesh/facet_bulge.h"
 
-#include <algorithm>
-#include <cmath>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "elastimate/core/mesh/facets.h"
@@ -9,27 +8,26 @@
 namespace elastimate {
 namespace {
 
-// A facet at one of its vertices.
+// A facet at one of its vertices, with its weight in the normal there.
 struct Corner {
   Eigen::Index facet;
-  double angle;
+  double weight;
 };
 
-// Returns the angle between the edges of a facet that meet at its vertex k;
-// in the plane, where an edge has no angle, its length.
-double AngleAt(const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet,
-               int k) {
+double WeightAt(const Mesh& mesh,
+                const Eigen::Ref<const Eigen::VectorXi>& facet, int k) {
   const int num_vertices = mesh.Topology().NumVerticesOfFace();
-  const auto vertex = [&](int i) {
-    return mesh.nodes.col(facet(i % num_vertices));
+  const auto edge_to = [&](int i) {
+    return Eigen::VectorXd(mesh.nodes.col(facet(i % num_vertices)) -
+                           mesh.nodes.col(facet(k)));
   };
-  const Eigen::VectorXd next = vertex(k + 1) - vertex(k);
+  const Eigen::VectorXd next = edge_to(k + 1);
   if (num_vertices == 2) {
-    return next.norm();
+    return 1 / next.norm();
   }
-  const Eigen::VectorXd last = vertex(k + num_vertices - 1) - vertex(k);
-  return std::acos(
-      std::clamp(next.dot(last) / (next.norm() * last.norm()), -1.0, 1.0));
+  const Eigen::VectorXd last = edge_to(k + num_vertices - 1);
+  return Eigen::Vector3d(next).cross(Eigen::Vector3d(last)).norm() /
+         (next.squaredNorm() * last.squaredNorm());
 }
 
 // The outer surface, with the unit normal of each facet.
@@ -47,7 +45,7 @@ class Surface {
                             .sum()
                             .normalized();
       for (int k = 0; k < num_vertices_; ++k) {
-        corners_[facets(k, i)].push_back({i, AngleAt(mesh, facets.col(i), k)});
+        corners_[facets(k, i)].push_back({i, WeightAt(mesh, facets.col(i), k)});
       }
     }
   }
@@ -72,7 +70,7 @@ class Surface {
     Eigen::VectorXd normal = Eigen::VectorXd::Zero(mesh_.Dimension());
     for (const Corner& corner : corners_[node]) {
       if (normals_.col(corner.facet).dot(normals_.col(facet)) > kCosineOfEdge) {
-        normal += corner.angle * normals_.col(corner.facet);
+        normal += corner.weight * normals_.col(corner.facet);
       }
     }
     return normal.normalized();

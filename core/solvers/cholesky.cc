@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -13,7 +14,7 @@
 #include "elastimate/core/solvers/cholmod_view.h"
 #include "elastimate/core/solvers/nested_dissection.h"
 
-// Of OpenBLAS: 2 where its threads are those of OpenMP.  Null for other BLAS.
+// Returns 2 if OpenBLAS has threads of OpenMP; null for another BLAS.
 extern "C" [[gnu::weak]] int openblas_get_parallel();
 
 namespace elastimate {
@@ -21,23 +22,29 @@ namespace {
 
 // CHOLMOD asks for four threads of OpenMP in a small loop for each supernode,
 // however many processors there are, and waking them takes longer than the
-// loops do.  While this lives, such loops have one thread.  Where the threads
-// of BLAS are those of OpenMP, nothing changes, since dense products need them.
+// loops do.  While this lives, the loops of the calling thread have one.  It
+// does nothing where the threads of BLAS may be those of OpenMP, since dense
+// products need them.
 class OneThreadInLoops {
  public:
-  OneThreadInLoops() : levels_(omp_get_max_active_levels()) {
+  OneThreadInLoops() {
     constexpr int kOpenMp = 2;
     if (openblas_get_parallel != nullptr &&
         openblas_get_parallel() != kOpenMp) {
+      levels_ = omp_get_max_active_levels();
       omp_set_max_active_levels(0);
     }
   }
-  ~OneThreadInLoops() { omp_set_max_active_levels(levels_); }
+  ~OneThreadInLoops() {
+    if (levels_) {
+      omp_set_max_active_levels(*levels_);
+    }
+  }
   OneThreadInLoops(const OneThreadInLoops&) = delete;
   OneThreadInLoops& operator=(const OneThreadInLoops&) = delete;
 
  private:
-  int levels_;
+  std::optional<int> levels_;
 };
 
 // Ratios of pivots (a cheap condition estimate): below the first a solution has

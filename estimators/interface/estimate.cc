@@ -50,7 +50,7 @@ bool ParameterEstimate::IsDetermined() const {
 }
 
 bool ModulusEstimate::IsDetermined() const {
-  return standard_error <= kLimits.largest_youngs_modulus_error * value;
+  return RelativeError() <= kLimits.largest_youngs_modulus_error;
 }
 
 std::string RegionsLabel(const std::vector<int>& regions) {
@@ -87,6 +87,15 @@ bool Estimate::IsRefusedFor(FindingCode code) const {
       findings.begin(), findings.end(), [code](const Finding& finding) {
         return finding.code == code && finding.severity == Severity::kError;
       });
+}
+
+bool Estimate::DeterminesAll() const {
+  return IsUsable() &&
+         std::none_of(
+             findings.begin(), findings.end(), [](const Finding& finding) {
+               return finding.code == FindingCode::kParametersUndetermined &&
+                      finding.severity == Severity::kWarning;
+             });
 }
 
 std::vector<std::string> Estimate::Sentences(Severity severity) const {

@@ -66,11 +66,12 @@ struct ParameterEstimate {
   bool IsDetermined() const;
 };
 
-/// A modulus that is no parameter of a law, and follows from them.
+/// A modulus that follows from the parameters of a law.
 struct ModulusEstimate {
   double value;           ///< [pressure]
   double standard_error;  ///< [pressure]
 
+  double RelativeError() const { return standard_error / value; }
   /// Whether its standard error is small enough to be of use (Limits).
   bool IsDetermined() const;
 };
@@ -238,7 +239,7 @@ struct Estimate {
   std::vector<AxisEstimate> axes;
 
   /// mu of one isotropic material whose E and nu the data do not determine,
-  /// while they determine mu; empty for others (FindShearModulus).
+  /// while they determine mu; empty for others (FindDeterminedModulus).
   std::optional<ModulusEstimate> shear_modulus;
 
   /// What the errors come from.
@@ -325,10 +326,9 @@ struct Estimate {
   double seconds = 0;  ///< Time of the whole estimator.
 
   bool IsUsable() const { return status == Status::kOk; }
-  /// Whether it is usable, and the data determine all parameters.
-  bool DeterminesAll() const {
-    return IsUsable() && !Has(FindingCode::kParametersUndetermined);
-  }
+  /// Whether it is usable, and no warning names parameters that the data do not
+  /// determine.
+  bool DeterminesAll() const;
   /// Whether something of this code was found.
   bool Has(FindingCode code) const;
   /// Whether the error has this code.
@@ -356,8 +356,9 @@ struct Estimate {
   std::optional<double> Correlation() const;
   /// mu = E / (2 (1 + nu)), or `shear_modulus` where there is one.
   double ShearModulus() const;
-  /// The standard errors of mu and of 1 / kappa, to first order but for that of
-  /// `shear_modulus`; empty unless the covariance of both E and nu is known.
+  /// The standard errors of mu and of 1 / kappa.  Where there is a
+  /// `shear_modulus`, that of mu is its own.  Otherwise they are those of first
+  /// order, and empty unless the covariance of both E and nu is known.
   std::optional<double> ShearModulusStandardError() const;
   std::optional<double> BulkComplianceStandardError() const;
 

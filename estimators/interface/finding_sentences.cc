@@ -776,8 +776,8 @@ Finding DiscretizationErrorFinding(const Estimate& estimate) {
 
 Finding FacetsOfRoundBody(double error) {
   return Warning(FindingCode::kFlatFacets,
-                 "the facets of the mesh are flat: where the specimen is "
-                 "round, moduli come out about " +
+                 "the facets of the mesh are flat; if the specimen is round "
+                 "there, the moduli come out about " +
                      Percent(std::abs(error)) + " too " +
                      (error > 0 ? "large" : "small") +
                      ", which no error bar includes",

@@ -49,7 +49,8 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
 /// E and nu are those of one isotropic material.
 Finding ParametersOfOneUndetermined(const std::vector<std::string>& parameters);
-/// They determine the shear modulus, as torsion does.
+/// The data determine the shear modulus, but not these parameters, as in
+/// torsion.
 Finding ShearModulusOnly(const std::vector<std::string>& parameters,
                          const ModulusEstimate& shear_modulus);
 /// Says so where most of the errors is what the elements miss.
@@ -170,10 +171,10 @@ Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);
 /// `errors` are of (ln E, nu).
 Finding SupportsEndWithinElements(const ParameterErrors& errors,
                                   const Estimate& estimate);
-/// Precondition: there is a discretisation error.
 /// For a mesh whose facets are flat where the specimen may be round: `error` is
 /// that of the moduli, positive where they are too large.
 Finding FacetsOfRoundBody(double error);
+/// Precondition: there is a discretisation error.
 Finding DiscretizationErrorFinding(const Estimate& estimate);
 /// Measured displacements and a method that sees no mesh error.
 Finding MeshErrorUnknown();

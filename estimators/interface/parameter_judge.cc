@@ -323,8 +323,8 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
   }
 }
 
-// Whether a modulus is determined, which may be one that is no parameter, and
-// the errors of all other parameters are finite.  An undetermined axis, or a
+// Whether a modulus is determined, a parameter or the shear modulus, and the
+// errors of all other parameters are finite.  An undetermined axis, or a
 // parameter on a bound, makes all parameters doubtful.
 bool AreSomeDetermined(const Estimate& estimate) {
   bool are_some = estimate.shear_modulus.has_value();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <variant>
 
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mechanics/internal_forces.h"
@@ -13,13 +14,44 @@
 #include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
+namespace {
+
+bool AreForcesGiven(const Scene& scene) {
+  const auto is_force = [](const Load& load) {
+    return std::holds_alternative<NodalForces>(load) ||
+           std::holds_alternative<SurfaceForce>(load);
+  };
+  return std::all_of(scene.load_cases.begin(), scene.load_cases.end(),
+                     [&](const LoadCase& load_case) {
+                       return std::all_of(load_case.loads.begin(),
+                                          load_case.loads.end(), is_force);
+                     });
+}
+
+// Returns the relative standard error of the best known modulus.
+double LeastError(const Estimate& estimate) {
+  double least = estimate.shear_modulus
+                     ? estimate.shear_modulus->RelativeError()
+                     : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    const double variance =
+        estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i));
+    if (parameter.is_modulus && variance >= 0) {
+      least = std::min(least, std::sqrt(variance) / parameter.value);
+    }
+  }
+  return least;
+}
+
+}  // namespace
 
 std::optional<double> ErrorByFacets(const Scene& scene,
                                     const Estimate& estimate,
                                     const Eigen::MatrixXd& displacement) {
   const Mesh& mesh = scene.mesh;
   if (IsCurved(mesh.kind) || HasLargeStrainLaw(scene.materials) ||
-      displacement.rows() != mesh.NumDofs()) {
+      !AreForcesGiven(scene) || displacement.rows() != mesh.NumDofs()) {
     return std::nullopt;
   }
   const InternalForces forces(mesh, scene.materials);
@@ -49,19 +81,10 @@ void WarnOfFlatFacets(const Scene& scene, const Eigen::MatrixXd& displacement,
   if (scene.origin != Origin::kMeasured || !estimate.IsUsable()) {
     return;
   }
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    const ParameterEstimate& parameter = estimate.parameters[i];
-    const double variance =
-        estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i));
-    if (parameter.is_modulus && variance >= 0) {
-      least = std::min(least, std::sqrt(variance) / parameter.value);
-    }
-  }
   const std::optional<double> error =
       ErrorByFacets(scene, estimate, displacement);
-  if (error && std::abs(*error) >
-                   std::max(kLimits.notable_youngs_modulus_error, least)) {
+  if (error && std::abs(*error) > std::max(kLimits.notable_youngs_modulus_error,
+                                           LeastError(estimate))) {
     estimate.Add(FacetsOfRoundBody(*error));
   }
 }

@@ -7,10 +7,10 @@
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/certified_descent.h"
+#include "elastimate/estimators/material_fit/determined_modulus.h"
 #include "elastimate/estimators/material_fit/facet_error.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
 #include "elastimate/estimators/material_fit/refined_fit.h"
-#include "elastimate/estimators/material_fit/shear_modulus.h"
 
 namespace elastimate {
 namespace {
@@ -76,21 +76,38 @@ class MaterialFitPreparation : public Preparation {
 
   Estimate Run(const Scene& scene) override {
     MaterialFit fit = FitMaterialsFrom(start_, scene, options_, descent_);
-    if (start_ && !fit.estimate.DeterminesAll()) {
+    if (start_ && !IsGoodStart(fit)) {
       const Work work = fit.estimate.work;
       fit = FitMaterialsFrom(std::nullopt, scene, options_, descent_);
       fit.estimate.work = fit.estimate.work + work;
     }
-    start_ = fit.estimate.DeterminesAll() ? fit.Variables() : std::nullopt;
+    start_ = IsGoodStart(fit) ? fit.Variables() : std::nullopt;
     return fit.estimate;
   }
   bool TakesOtherLoadCases() const override { return true; }
 
  private:
+  static bool IsGoodStart(const MaterialFit& fit) {
+    return fit.estimate.IsUsable() && !fit.is_undetermined;
+  }
+
   const EstimatorOptions& options_;
   Descent descent_;
   std::optional<Eigen::VectorXd> start_;
 };
+
+// Looks for a modulus that is determined where the parameters are not, and says
+// what flat facets may do.
+void Complete(const Scene& scene, const EstimatorOptions& options,
+              Descent descent, MaterialFit& fit) {
+  fit.is_undetermined = FindDeterminedModulus(
+      scene, options,
+      [&](const EstimatorOptions& others) {
+        return FitMaterials(scene, others, descent);
+      },
+      fit.estimate);
+  WarnOfFlatFacets(scene, fit.displacement, fit.estimate);
+}
 
 // Keeps the reduced model with its certificate, which needs no start.
 class CertifiedPreparation : public Preparation {
@@ -104,7 +121,9 @@ class CertifiedPreparation : public Preparation {
     } else {
       fit_.emplace(scene, options_, Descent::kReduced);
     }
-    return fit_->Fit(scene, std::nullopt).estimate;
+    MaterialFit fit = fit_->Fit(scene, std::nullopt);
+    Complete(scene, options_, Descent::kReduced, fit);
+    return fit.estimate;
   }
 
  private:
@@ -125,13 +144,7 @@ MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
   if (fit.has_rival_axis && fit.estimate.IsUsable()) {
     fit.estimate.Fail(OtherAxisAlike());
   }
-  WarnOfFlatFacets(scene, fit.displacement, fit.estimate);
-  FindShearModulus(
-      scene, options,
-      [&](const EstimatorOptions& others) {
-        return FitMaterialsFrom(std::nullopt, scene, others, descent).estimate;
-      },
-      fit.estimate);
+  Complete(scene, options, descent, fit);
   if (HasUnknownMotion(scene)) {
     fit.estimate.fitted_displacement = fit.displacement;
     fit.estimate.cameras = fit.cameras;

@@ -35,6 +35,9 @@ struct MaterialFit {
   std::vector<Camera> cameras;
   /// Whether the data hardly prefer an axis that was found to another one.
   bool has_rival_axis = false;
+  /// Whether values far from the minimum explain the data as well
+  /// (FindDeterminedModulus).
+  bool is_undetermined = false;
 
   std::optional<Eigen::VectorXd> Variables() const {
     return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)

@@ -15,12 +15,13 @@ namespace {
 // Steps below this part of a standard error end a search.
 constexpr double kSmallestStepOfErrors = 1e-2;
 
-// Next to nu = 1/2 and nu = -1 displacements change with the distance to these
-// ends.  Steps of nu itself would end there at once, and take many to come
-// back.  So the search takes its steps in ln((1 + nu) / (1/2 - nu)) instead.
+// Next to nu = 1/2 and nu = -1, displacements change with the distance to these
+// ends.  Steps in nu would overshoot the ends at once, and return only slowly.
+// So the search takes its steps in ln((1 + nu) / (1/2 - nu)) instead.
 class SearchVariables {
  public:
-  explicit SearchVariables(const FreeParameters& free) {
+  explicit SearchVariables(const FreeParameters& free)
+      : bounds_(free.VariableBounds()) {
     for (Eigen::Index i = 0; i < free.Size(); ++i) {
       is_ratio_.push_back(free.Free(i).law_parameter->name == "poisson_ratio");
     }
@@ -34,7 +35,8 @@ class SearchVariables {
     }
     return variables;
   }
-  std::vector<Bounds> Of(std::vector<Bounds> bounds) const {
+  std::vector<Bounds> SearchBounds() const {
+    std::vector<Bounds> bounds = bounds_;
     for (std::size_t i = 0; i < bounds.size(); ++i) {
       if (is_ratio_[i]) {
         bounds[i] = {OfRatio(*bounds[i].lower), OfRatio(*bounds[i].upper)};
@@ -45,7 +47,9 @@ class SearchVariables {
   Eigen::VectorXd Back(Eigen::VectorXd searched) const {
     for (Eigen::Index i = 0; i < searched.size(); ++i) {
       if (is_ratio_[i]) {
-        searched(i) = 0.5 - 1.5 / (1 + std::exp(searched(i)));
+        // Rounding must not leave the bounds.
+        searched(i) = std::clamp(0.5 - 1.5 / (1 + std::exp(searched(i))),
+                                 *bounds_[i].lower, *bounds_[i].upper);
       }
     }
     return searched;
@@ -68,6 +72,7 @@ class SearchVariables {
     return std::log((1 + within) / (0.5 - within));
   }
 
+  const std::vector<Bounds>& bounds_;
   std::vector<bool> is_ratio_;
 };
 
@@ -85,6 +90,7 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
   options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
                                static_cast<double>(misfit.NumRows());
+  // Exact displacements leave small gradients far from the minimum, too.
   options.gradient_tolerance = 1e-20;
   options.parameter_tolerance = 1e-11;
   options.logging_type = ceres::SILENT;
@@ -108,8 +114,7 @@ BoundedMinimum Search(const EstimatorOptions& estimator_options,
         }
         return is_solved;
       },
-      misfit.NumRows(), searched.Of(misfit.Free().VariableBounds()),
-      searched.Of(start), options);
+      misfit.NumRows(), searched.SearchBounds(), searched.Of(start), options);
   minimum.variables = searched.Back(minimum.variables);
   return minimum;
 }

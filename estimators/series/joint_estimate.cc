@@ -101,7 +101,9 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
                              const LoadError& load_error) {
   const Estimate& estimate = frame.estimate;
   const Eigen::VectorXi free = FreeParametersOf(estimate);
-  if (!estimate.IsUsable() || free.size() == 0 ||
+  // What is determined is then no parameter that could be averaged.
+  const bool is_shear_modulus_alone = estimate.shear_modulus.has_value();
+  if (!estimate.IsUsable() || is_shear_modulus_alone || free.size() == 0 ||
       estimate.parameter_covariance.rows() !=
           Eigen::Index(estimate.parameters.size())) {
     return std::nullopt;
@@ -561,9 +563,12 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   joint.estimator = estimator.Name();
   if (used.empty()) {
     const Estimate& first = frames.front().estimate;
-    joint.Fail(NoFrameUsable(frames.size(), first.message.empty()
-                                                ? first.why_no_standard_error
-                                                : first.message));
+    joint.Fail(NoFrameUsable(
+        frames.size(),
+        first.shear_modulus
+            ? "the frames determine the shear modulus alone, each for itself"
+        : first.message.empty() ? first.why_no_standard_error
+                                : first.message));
     return joint;
   }
   ShareNoiseOfFewDegreesOfFreedom(used);

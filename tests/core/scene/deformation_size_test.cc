@@ -70,9 +70,9 @@ TEST(DeformationSize, OfABentBarIsTheRotationOfItsEnd) {
   EXPECT_GT(size.strain, curvature / 4);
 }
 
-// Of a face that turns, points in it do not show that the bar beneath turns,
-// too.
-TEST(DeformationSize, OfAPlaneIsWithinIt) {
+// Points in a face show that the face turns, and not that the bar beneath turns
+// with it.
+TEST(DeformationSize, OfPlacesInAPlaneTakesItsNormalToTurnWithIt) {
   const double curvature = 20 * kDegree / 8;
   Scene scene = BarMovedBy([&](const Eigen::Vector3d& x) {
     const double angle = curvature * x(2);

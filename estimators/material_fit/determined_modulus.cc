@@ -1,0 +1,199 @@
+#include "elastimate/estimators/material_fit/determined_modulus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "elastimate/core/laws/elasticity.h"
+#include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/estimators/interface/judge.h"
+
+namespace elastimate {
+namespace {
+
+// Between which nu is looked at.  Beyond, elements lock, and mu hardly changes
+// any more.
+constexpr double kSmallestRatioGiven = -0.9;
+constexpr double kLargestRatioGiven = 0.49;
+
+bool IsAsked(const Scene& scene, const EstimatorOptions& options,
+             const Estimate& estimate) {
+  return IsOneIsotropicMaterial(scene.materials) &&
+         options.kinematics != Kinematics::kLarge &&
+         !options.youngs_modulus.AreGiven() &&
+         !options.poisson_ratio.AreGiven() && !HasPriors(scene.materials) &&
+         estimate.parameters.size() == 2 &&
+         std::all_of(estimate.parameters.begin(), estimate.parameters.end(),
+                     [](const ParameterEstimate& parameter) {
+                       return !parameter.is_known &&
+                              std::isfinite(parameter.value);
+                     });
+}
+
+// Returns the ends of what the data leave open, and the middle.
+std::vector<double> RatiosToGive(const ParameterEstimate& ratio) {
+  double lower = kSmallestRatioGiven;
+  double upper = kLargestRatioGiven;
+  if (ratio.standard_error) {
+    const auto within = [](double nu) {
+      return std::clamp(nu, kSmallestRatioGiven, kLargestRatioGiven);
+    };
+    lower = within(ratio.value - *ratio.standard_error);
+    upper = within(ratio.value + *ratio.standard_error);
+  }
+  return {lower, (lower + upper) / 2, upper};
+}
+
+double RelativeError(const Estimate& fit) {
+  return std::sqrt(fit.parameter_covariance(0, 0)) / fit.parameters[0].value;
+}
+
+IsotropicElasticity ElasticityOf(const Estimate& fit) {
+  return {fit.parameters[0].value, fit.parameters[1].value};
+}
+
+// Fits E with nu given at several values.  Returns none where one of them is
+// not usable, or where the data contradict all but one.
+std::vector<Estimate> FitsWithRatio(const Scene& scene,
+                                    const EstimatorOptions& options,
+                                    const FitWithOptions& fit,
+                                    const ParameterEstimate& ratio,
+                                    Work& work) {
+  std::vector<Estimate> fits;
+  for (const double nu : RatiosToGive(ratio)) {
+    EstimatorOptions with_ratio = options;
+    with_ratio.known_poisson_ratio = nu;
+    const Estimate estimate = fit(with_ratio);
+    work = work + estimate.work;
+    Estimate judged = estimate;
+    FinishEstimate(estimate.estimator, scene, with_ratio, {}, judged);
+    if (judged.Has(FindingCode::kGivenValueContradicted)) {
+      continue;
+    }
+    if (!judged.IsUsable() || !judged.YoungsModulusStandardError()) {
+      return {};
+    }
+    fits.push_back(estimate);
+  }
+  return fits.size() < 2 ? std::vector<Estimate>() : fits;
+}
+
+const Estimate& LeastCertain(const std::vector<Estimate>& fits) {
+  return *std::max_element(fits.begin(), fits.end(),
+                           [](const Estimate& a, const Estimate& b) {
+                             return RelativeError(a) < RelativeError(b);
+                           });
+}
+
+// Returns what the fits say of a modulus.
+template <class Modulus>
+ModulusEstimate MeanOf(const std::vector<Estimate>& fits,
+                       const Modulus& modulus) {
+  std::vector<double> logarithms;
+  for (const Estimate& fit : fits) {
+    logarithms.push_back(std::log(modulus(ElasticityOf(fit))));
+  }
+  const auto [least, most] =
+      std::minmax_element(logarithms.begin(), logarithms.end());
+  const double value = std::exp((*least + *most) / 2);
+  return {value, value * std::hypot((*most - *least) / 2,
+                                    RelativeError(LeastCertain(fits)))};
+}
+
+// Returns errors of E and nu that reach to the fit whose nu is furthest.
+Eigen::Matrix2d CovarianceToFurthest(const std::vector<Estimate>& fits,
+                                     const IsotropicElasticity& elasticity) {
+  Eigen::Vector2d furthest = Eigen::Vector2d::Zero();
+  for (const Estimate& fit : fits) {
+    const auto [youngs_modulus, poisson_ratio] = ElasticityOf(fit);
+    const Eigen::Vector2d move = {
+        elasticity.youngs_modulus *
+            std::log(youngs_modulus / elasticity.youngs_modulus),
+        poisson_ratio - elasticity.poisson_ratio};
+    if (std::abs(move(1)) > std::abs(furthest(1))) {
+      furthest = move;
+    }
+  }
+  Eigen::Matrix2d covariance = furthest * furthest.transpose();
+  covariance(0, 0) += std::pow(
+      RelativeError(LeastCertain(fits)) * elasticity.youngs_modulus, 2);
+  return covariance;
+}
+
+// Enters a covariance whose errors are mostly those of other values that fit as
+// well, beside what the fits with nu given have.
+void EnterErrors(const Eigen::Matrix2d& covariance,
+                 const std::vector<Estimate>& fits, Estimate& estimate) {
+  const Estimate& fit = LeastCertain(fits);
+  estimate.parameter_covariance = covariance;
+  estimate.noise_sd = fit.noise_sd;
+  estimate.error_budget = fit.error_budget;
+  const double of_fit = RelativeError(fit);
+  const double of_youngs_modulus =
+      std::sqrt(covariance(0, 0)) / estimate.parameters[0].value;
+  estimate.error_budget.curvature =
+      Eigen::Vector2d(std::sqrt(std::max(0.0, std::pow(of_youngs_modulus, 2) -
+                                                  std::pow(of_fit, 2))),
+                      std::sqrt(covariance(1, 1)));
+}
+
+// Enters E where it is the same for all nu, and else the shear modulus.
+// Returns false where neither is determined.
+bool EnterModulus(const std::vector<Estimate>& fits, Estimate& estimate) {
+  const ModulusEstimate youngs_modulus =
+      MeanOf(fits, [](const auto& e) { return e.youngs_modulus; });
+  const ModulusEstimate shear_modulus =
+      MeanOf(fits, [](const auto& e) { return e.ShearModulus(); });
+  const bool is_youngs_modulus =
+      youngs_modulus.RelativeError() < shear_modulus.RelativeError();
+  if (!(is_youngs_modulus ? youngs_modulus : shear_modulus).IsDetermined()) {
+    return false;
+  }
+  if (is_youngs_modulus) {
+    estimate.parameters[0].value = youngs_modulus.value;
+  } else {
+    estimate.shear_modulus = shear_modulus;
+  }
+  Eigen::Matrix2d covariance = estimate.parameter_covariance;
+  if (!covariance.allFinite()) {
+    covariance = CovarianceToFurthest(fits, ElasticityOf(estimate));
+  }
+  if (is_youngs_modulus) {
+    covariance(0, 0) = std::pow(youngs_modulus.standard_error, 2);
+    covariance(0, 1) = 0;
+    covariance(1, 0) = 0;
+  }
+  if (covariance != estimate.parameter_covariance) {
+    EnterErrors(covariance, fits, estimate);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool FindDeterminedModulus(const Scene& scene, const EstimatorOptions& options,
+                           const FitWithOptions& fit, Estimate& estimate) {
+  if (!IsAsked(scene, options, estimate)) {
+    return false;
+  }
+  Estimate judged = estimate;
+  FinishEstimate(estimate.estimator, scene, options, {}, judged);
+  const ParameterEstimate& ratio = judged.parameters[1];
+  if (!judged.IsRefusedFor(FindingCode::kParametersUndetermined) ||
+      ratio.IsDetermined()) {
+    return false;
+  }
+  Work work = estimate.work;
+  const std::vector<Estimate> fits =
+      FitsWithRatio(scene, options, fit, ratio, work);
+  estimate.work = work;
+  if (!fits.empty() && EnterModulus(fits, estimate)) {
+    estimate.Accept();
+    estimate.why_no_standard_error.clear();
+    // The end of the range of nu says nothing of the modulus.
+    estimate.active_bounds.clear();
+  }
+  return true;
+}
+
+}  // namespace elastimate
