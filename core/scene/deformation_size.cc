@@ -284,9 +284,12 @@ Eigen::MatrixXd PointsOfTheVolume(const Scene& scene, const LoadCase& load_case,
 }
 
 // Returns the normal of the plane in which all places lie; empty where there is
-// none.
-std::optional<Eigen::Vector3d> NormalOfPlane(const std::vector<Observed>& all) {
+// none, and where the body is not thin along it, as a block that is seen from
+// above: then its inside may do something else than its face.
+std::optional<Eigen::Vector3d> NormalOfPlane(const std::vector<Observed>& all,
+                                             const Mesh& mesh) {
   constexpr double kFlat = 1e-4;  // Of the largest extent.
+  constexpr double kThin = 0.15;  // Of the longer extent of the places.
   Eigen::Index count = 0;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Observed& observed : all) {
@@ -300,8 +303,20 @@ std::optional<Eigen::Vector3d> NormalOfPlane(const std::vector<Observed>& all) {
     squares += arms * arms.transpose();
   }
   const SymmetricEigenDecomposition axes = DecomposeSymmetric(squares);
-  return axes.values(0) < kFlat * kFlat * axes.values(2)
-             ? std::optional<Eigen::Vector3d>(axes.vectors.col(0))
+  const Eigen::Vector3d normal = axes.vectors.col(0);
+  const auto extent_along = [](const Eigen::Vector3d& direction,
+                               const Eigen::MatrixXd& places) {
+    const Eigen::VectorXd at = places.transpose() * direction;
+    return at.maxCoeff() - at.minCoeff();
+  };
+  double longest = 0;
+  for (const Observed& observed : all) {
+    longest = std::max(longest,
+                       extent_along(axes.vectors.col(2), observed.positions));
+  }
+  return axes.values(0) < kFlat * kFlat * axes.values(2) &&
+                 extent_along(normal, mesh.nodes) < kThin * longest
+             ? std::optional<Eigen::Vector3d>(normal)
              : std::nullopt;
 }
 
@@ -348,7 +363,7 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
     }
   }
   if (dimension == 3) {
-    if (const auto normal = NormalOfPlane(observed_values)) {
+    if (const auto normal = NormalOfPlane(observed_values, scene.mesh)) {
       for (Eigen::MatrixXd& f : gradients) {
         CompleteByNormal(*normal, f);
       }

@@ -239,7 +239,7 @@ struct Estimate {
   std::vector<AxisEstimate> axes;
 
   /// mu of one isotropic material whose E and nu the data do not determine,
-  /// while they determine mu; empty for others (FindDeterminedModulus).
+  /// while they determine mu; empty for others (FindShearModulus).
   std::optional<ModulusEstimate> shear_modulus;
 
   /// What the errors come from.

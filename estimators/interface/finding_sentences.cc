@@ -777,8 +777,8 @@ Finding DiscretizationErrorFinding(const Estimate& estimate) {
 Finding FacetsOfRoundBody(double error) {
   return Warning(FindingCode::kFlatFacets,
                  "the facets of the mesh are flat; if the specimen is round "
-                 "there, the moduli come out about " +
-                     Percent(std::abs(error)) + " too " +
+                 "there, the moduli come out " +
+                     Percent(std::abs(error)) + " or more too " +
                      (error > 0 ? "large" : "small") +
                      ", which no error bar includes",
                  "use smaller facets or curved elements, unless the specimen "

@@ -7,10 +7,10 @@
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/certified_descent.h"
-#include "elastimate/estimators/material_fit/determined_modulus.h"
 #include "elastimate/estimators/material_fit/facet_error.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
 #include "elastimate/estimators/material_fit/refined_fit.h"
+#include "elastimate/estimators/material_fit/shear_modulus.h"
 
 namespace elastimate {
 namespace {
@@ -96,11 +96,11 @@ class MaterialFitPreparation : public Preparation {
   std::optional<Eigen::VectorXd> start_;
 };
 
-// Looks for a modulus that is determined where the parameters are not, and says
+// Looks for the shear modulus where the parameters are not determined, and says
 // what flat facets may do.
 void Complete(const Scene& scene, const EstimatorOptions& options,
               Descent descent, MaterialFit& fit) {
-  fit.is_undetermined = FindDeterminedModulus(
+  fit.is_undetermined = FindShearModulus(
       scene, options,
       [&](const EstimatorOptions& others) {
         return FitMaterials(scene, others, descent);

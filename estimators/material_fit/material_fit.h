@@ -22,8 +22,8 @@ namespace elastimate {
 /// the others fitted again, until they are those of the fit without them
 /// (OutlierSearch); covariance as by DescribeMinimum.  Of parameters on bounds,
 /// the covariance is that without bounds.  Where neither E nor nu of one
-/// isotropic material is determined, E or the shear modulus may be if nu is
-/// given (FindDeterminedModulus).
+/// isotropic material is determined, FindShearModulus looks for the shear
+/// modulus.
 ///
 /// Where an axis is to be found, descents start from several (StartsOverAxes).
 /// The estimate is not usable where another axis explains the data nearly as

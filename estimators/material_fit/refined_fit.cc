@@ -233,20 +233,26 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
 
 // Coarse elements that lock may end far from the right nu.  A finer fit that
 // starts there may come to a minimum that is not the best.
-bool MayLeadAstray(const SpaceFit& coarser, const SpaceFit& fit) {
+bool MayLeadAstray(const SpaceFit& coarser, SpaceFit& fit) {
   // Square sums are relative to that of the measured displacements.
   constexpr double kLocked = kLimits.large_residual * kLimits.large_residual;
-  constexpr double kNextToMinusOne = -0.98;
+  // At small strains, other values of nu are looked at in any case
+  // (CovarianceAcrossRange).
+  const double least_trusted = fit.Misfit().HasLargeStrains() ? 0 : -0.98;
   return coarser.SquareSum() > std::max(kLocked, 4 * fit.SquareSum()) ||
-         fit.Fit().minimum->variables.tail<1>()(0) < kNextToMinusOne;
+         fit.Fit().minimum->variables.tail<1>()(0) < least_trusted;
 }
 
 void Refinement::LookForBetterMinimum(const SpaceFit& coarser,
                                       SpaceFit& fit) const {
-  if (coarser.Fit().minimum && fit.Fit().minimum &&
-      options_.loss == Loss::kNone && !HasUnknownMotion(scene_) &&
-      IsOneIsotropicMaterial(scene_.materials) &&
-      !fit.Misfit().HasLargeStrains() && MayLeadAstray(coarser, fit)) {
+  if (!coarser.Fit().minimum || !fit.Fit().minimum ||
+      options_.loss != Loss::kNone || HasUnknownMotion(scene_) ||
+      !MayLeadAstray(coarser, fit)) {
+    return;
+  }
+  if (fit.Misfit().HasLargeStrains()) {
+    fit.MinimizeAlsoWithoutStart(descent_);
+  } else if (IsOneIsotropicMaterial(scene_.materials)) {
     fit.MinimizeAcrossRange(descent_);
   }
 }

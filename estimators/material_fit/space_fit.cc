@@ -283,11 +283,22 @@ void SpaceFit::Minimize(Descent descent,
 }
 
 void SpaceFit::MinimizeAcrossRange(Descent descent) {
+  const std::vector<Eigen::VectorXd> starts =
+      StartsAcrossRange(scene_, *fit_.minimum, misfit_);
+  MinimizeAlsoFrom(descent, {starts.begin(), starts.end()});
+}
+
+void SpaceFit::MinimizeAlsoWithoutStart(Descent descent) {
+  MinimizeAlsoFrom(descent, {std::nullopt});
+}
+
+void SpaceFit::MinimizeAlsoFrom(
+    Descent descent,
+    const std::vector<std::optional<Eigen::VectorXd>>& starts) {
   MaterialFit best = fit_;
   const Work of_found = fit_.estimate.work;
   const Work before = WorkDone();
-  for (const Eigen::VectorXd& start :
-       StartsAcrossRange(scene_, *best.minimum, misfit_)) {
+  for (const std::optional<Eigen::VectorXd>& start : starts) {
     Minimize(descent, start);
     if (fit_.minimum && fit_.minimum->cost < best.minimum->cost) {
       best = fit_;

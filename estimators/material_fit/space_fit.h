@@ -36,7 +36,7 @@ struct MaterialFit {
   /// Whether the data hardly prefer an axis that was found to another one.
   bool has_rival_axis = false;
   /// Whether values far from the minimum explain the data as well
-  /// (FindDeterminedModulus).
+  /// (FindShearModulus).
   bool is_undetermined = false;
 
   std::optional<Eigen::VectorXd> Variables() const {
@@ -69,6 +69,10 @@ class SpaceFit {
   /// that these show.
   void MinimizeAcrossRange(Descent descent);
 
+  /// Descends also as without a start, and keeps the better minimum.
+  /// Precondition: a minimum.
+  void MinimizeAlsoWithoutStart(Descent descent);
+
   /// Describes the minimum, with the mesh error that `change` from coarser
   /// elements tells of; null where the elements are taken as exact.  `curved`
   /// is this fit or a coarser one, whose curvature adds to the errors, or null
@@ -99,6 +103,9 @@ class SpaceFit {
   const MaterialFit& Fit() const { return fit_; }
 
  private:
+  void MinimizeAlsoFrom(
+      Descent descent,
+      const std::vector<std::optional<Eigen::VectorXd>>& starts);
   /// Enters what is there at the minimum before it is described.
   void EnterMinimum();
   /// Moves to the minimum with the loss of the options, by reweighting.

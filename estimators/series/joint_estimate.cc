@@ -102,7 +102,8 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
   const Estimate& estimate = frame.estimate;
   const Eigen::VectorXi free = FreeParametersOf(estimate);
   // What is determined is then no parameter that could be averaged.
-  const bool is_shear_modulus_alone = estimate.shear_modulus.has_value();
+  const bool is_shear_modulus_alone =
+      estimate.shear_modulus && !estimate.parameters[0].IsDetermined();
   if (!estimate.IsUsable() || is_shear_modulus_alone || free.size() == 0 ||
       estimate.parameter_covariance.rows() !=
           Eigen::Index(estimate.parameters.size())) {

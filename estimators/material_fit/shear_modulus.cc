@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/determined_modulus.h"
+#include "elastimate/estimators/material_fit/shear_modulus.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +22,7 @@ bool IsAsked(const Scene& scene, const EstimatorOptions& options,
          options.kinematics != Kinematics::kLarge &&
          !options.youngs_modulus.AreGiven() &&
          !options.poisson_ratio.AreGiven() && !HasPriors(scene.materials) &&
+         !estimate.Has(FindingCode::kSmoothResidual) &&
          estimate.parameters.size() == 2 &&
          std::all_of(estimate.parameters.begin(), estimate.parameters.end(),
                      [](const ParameterEstimate& parameter) {
@@ -46,6 +47,14 @@ std::vector<double> RatiosToGive(const ParameterEstimate& ratio) {
 
 double RelativeError(const Estimate& fit) {
   return std::sqrt(fit.parameter_covariance(0, 0)) / fit.parameters[0].value;
+}
+
+// Whether E is determined so well that the shear modulus, which the fits would
+// cost, is not known better.
+bool IsWellKnown(const ParameterEstimate& youngs_modulus) {
+  constexpr double kSmallError = 0.05;
+  return youngs_modulus.standard_error &&
+         *youngs_modulus.standard_error < kSmallError * youngs_modulus.value;
 }
 
 IsotropicElasticity ElasticityOf(const Estimate& fit) {
@@ -85,13 +94,10 @@ const Estimate& LeastCertain(const std::vector<Estimate>& fits) {
                            });
 }
 
-// Returns what the fits say of a modulus.
-template <class Modulus>
-ModulusEstimate MeanOf(const std::vector<Estimate>& fits,
-                       const Modulus& modulus) {
+ModulusEstimate ShearModulusOf(const std::vector<Estimate>& fits) {
   std::vector<double> logarithms;
   for (const Estimate& fit : fits) {
-    logarithms.push_back(std::log(modulus(ElasticityOf(fit))));
+    logarithms.push_back(std::log(ElasticityOf(fit).ShearModulus()));
   }
   const auto [least, most] =
       std::minmax_element(logarithms.begin(), logarithms.end());
@@ -120,79 +126,55 @@ Eigen::Matrix2d CovarianceToFurthest(const std::vector<Estimate>& fits,
   return covariance;
 }
 
-// Enters a covariance whose errors are mostly those of other values that fit as
-// well, beside what the fits with nu given have.
-void EnterErrors(const Eigen::Matrix2d& covariance,
-                 const std::vector<Estimate>& fits, Estimate& estimate) {
+// Enters errors that are not known, which are mostly those of other values that
+// fit as well, beside what the fits with nu given have.
+void EnterMissingErrors(const std::vector<Estimate>& fits, Estimate& estimate) {
+  if (estimate.parameter_covariance.allFinite()) {
+    return;
+  }
+  const Eigen::Matrix2d covariance =
+      CovarianceToFurthest(fits, ElasticityOf(estimate));
   const Estimate& fit = LeastCertain(fits);
   estimate.parameter_covariance = covariance;
   estimate.noise_sd = fit.noise_sd;
   estimate.error_budget = fit.error_budget;
-  const double of_fit = RelativeError(fit);
   const double of_youngs_modulus =
       std::sqrt(covariance(0, 0)) / estimate.parameters[0].value;
-  estimate.error_budget.curvature =
-      Eigen::Vector2d(std::sqrt(std::max(0.0, std::pow(of_youngs_modulus, 2) -
-                                                  std::pow(of_fit, 2))),
-                      std::sqrt(covariance(1, 1)));
-}
-
-// Enters E where it is the same for all nu, and else the shear modulus.
-// Returns false where neither is determined.
-bool EnterModulus(const std::vector<Estimate>& fits, Estimate& estimate) {
-  const ModulusEstimate youngs_modulus =
-      MeanOf(fits, [](const auto& e) { return e.youngs_modulus; });
-  const ModulusEstimate shear_modulus =
-      MeanOf(fits, [](const auto& e) { return e.ShearModulus(); });
-  const bool is_youngs_modulus =
-      youngs_modulus.RelativeError() < shear_modulus.RelativeError();
-  if (!(is_youngs_modulus ? youngs_modulus : shear_modulus).IsDetermined()) {
-    return false;
-  }
-  if (is_youngs_modulus) {
-    estimate.parameters[0].value = youngs_modulus.value;
-  } else {
-    estimate.shear_modulus = shear_modulus;
-  }
-  Eigen::Matrix2d covariance = estimate.parameter_covariance;
-  if (!covariance.allFinite()) {
-    covariance = CovarianceToFurthest(fits, ElasticityOf(estimate));
-  }
-  if (is_youngs_modulus) {
-    covariance(0, 0) = std::pow(youngs_modulus.standard_error, 2);
-    covariance(0, 1) = 0;
-    covariance(1, 0) = 0;
-  }
-  if (covariance != estimate.parameter_covariance) {
-    EnterErrors(covariance, fits, estimate);
-  }
-  return true;
+  estimate.error_budget.curvature = Eigen::Vector2d(
+      std::sqrt(std::max(0.0, std::pow(of_youngs_modulus, 2) -
+                                  std::pow(RelativeError(fit), 2))),
+      std::sqrt(covariance(1, 1)));
 }
 
 }  // namespace
 
-bool FindDeterminedModulus(const Scene& scene, const EstimatorOptions& options,
-                           const FitWithOptions& fit, Estimate& estimate) {
+bool FindShearModulus(const Scene& scene, const EstimatorOptions& options,
+                      const FitWithOptions& fit, Estimate& estimate) {
   if (!IsAsked(scene, options, estimate)) {
     return false;
   }
   Estimate judged = estimate;
   FinishEstimate(estimate.estimator, scene, options, {}, judged);
   const ParameterEstimate& ratio = judged.parameters[1];
-  if (!judged.IsRefusedFor(FindingCode::kParametersUndetermined) ||
-      ratio.IsDetermined()) {
+  if (!judged.Has(FindingCode::kParametersUndetermined) ||
+      ratio.IsDetermined() || IsWellKnown(judged.parameters[0])) {
     return false;
   }
   Work work = estimate.work;
   const std::vector<Estimate> fits =
       FitsWithRatio(scene, options, fit, ratio, work);
   estimate.work = work;
-  if (!fits.empty() && EnterModulus(fits, estimate)) {
-    estimate.Accept();
-    estimate.why_no_standard_error.clear();
-    // The end of the range of nu says nothing of the modulus.
-    estimate.active_bounds.clear();
+  if (fits.empty() || !ShearModulusOf(fits).IsDetermined() ||
+      (judged.IsUsable() &&
+       ShearModulusOf(fits).RelativeError() > RelativeError(estimate))) {
+    return true;
   }
+  estimate.Accept();
+  estimate.why_no_standard_error.clear();
+  // The end of the range of nu says nothing of the shear modulus.
+  estimate.active_bounds.clear();
+  estimate.shear_modulus = ShearModulusOf(fits);
+  EnterMissingErrors(fits, estimate);
   return true;
 }
 
