@@ -22,7 +22,6 @@ bool IsAsked(const Scene& scene, const EstimatorOptions& options,
          options.kinematics != Kinematics::kLarge &&
          !options.youngs_modulus.AreGiven() &&
          !options.poisson_ratio.AreGiven() && !HasPriors(scene.materials) &&
-         !estimate.Has(FindingCode::kSmoothResidual) &&
          estimate.parameters.size() == 2 &&
          std::all_of(estimate.parameters.begin(), estimate.parameters.end(),
                      [](const ParameterEstimate& parameter) {
@@ -62,7 +61,8 @@ IsotropicElasticity ElasticityOf(const Estimate& fit) {
 }
 
 // Fits E with nu given at several values.  Returns none where one of them is
-// not usable, or where the data contradict all but one.
+// not usable or misses something smooth, so that its error may be too small,
+// and where the data contradict all but one.
 std::vector<Estimate> FitsWithRatio(const Scene& scene,
                                     const EstimatorOptions& options,
                                     const FitWithOptions& fit,
@@ -79,7 +79,8 @@ std::vector<Estimate> FitsWithRatio(const Scene& scene,
     if (judged.Has(FindingCode::kGivenValueContradicted)) {
       continue;
     }
-    if (!judged.IsUsable() || !judged.YoungsModulusStandardError()) {
+    if (!judged.IsUsable() || !judged.YoungsModulusStandardError() ||
+        judged.Has(FindingCode::kSmoothResidual)) {
       return {};
     }
     fits.push_back(estimate);
