@@ -29,8 +29,8 @@ struct DeformationSize {
 /// of a point counts as no deformation, and a local deformation, of several
 /// neighbours, counts.
 ///
-/// If all places that were observed lie in one plane, and the body is thin along
-/// its normal, this is taken to stay a unit normal of the deformed plane.
+/// If all places that were observed lie in one plane, and the body is thin
+/// along its normal, this is taken to stay a unit normal of the deformed plane.
 ///
 /// The result is the largest of all load cases, and zero where too few points
 /// were observed for a gradient.  Where not all nodes were observed, the

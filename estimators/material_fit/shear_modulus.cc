@@ -97,6 +97,7 @@ const Estimate& LeastCertain(const std::vector<Estimate>& fits) {
 
 ModulusEstimate ShearModulusOf(const std::vector<Estimate>& fits) {
   std::vector<double> logarithms;
+  logarithms.reserve(fits.size());
   for (const Estimate& fit : fits) {
     logarithms.push_back(std::log(ElasticityOf(fit).ShearModulus()));
   }

@@ -43,7 +43,7 @@ TEST(FacetBulge, OfAHoleIsNegative) {
   Mesh ring;
   ring.kind = ElementKind::kQuad4;
   ring.section = {SectionModel::kPlaneStress, 0.5};
-  ring.nodes.resize(2, 2 * kAround);
+  ring.nodes.resize(2, Eigen::Index{2} * kAround);
   ring.elements.resize(4, kAround);
   const auto angle_of = [](int i) {
     return 2 * kPi * (i + (i % 2 == 1 ? 0.5 : 0)) / kAround;
