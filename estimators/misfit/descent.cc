@@ -17,13 +17,16 @@ constexpr double kSmallestStepOfErrors = 1e-2;
 
 // Next to nu = 1/2 and nu = -1, displacements change with the distance to these
 // ends.  Steps in nu would overshoot the ends at once, and return only slowly.
-// So the search takes its steps in ln((1 + nu) / (1/2 - nu)) instead.
+// So the search of one material takes its steps in
+// ln((1 + nu) / (1/2 - nu)) instead.  Among several whose stiffnesses differ by
+// 10^4, such steps led to a minimum that leaves 28 times as much.
 class SearchVariables {
  public:
   explicit SearchVariables(const FreeParameters& free)
       : bounds_(free.VariableBounds()) {
     for (Eigen::Index i = 0; i < free.Size(); ++i) {
-      is_ratio_.push_back(free.Free(i).law_parameter->name == "poisson_ratio");
+      is_ratio_.push_back(free.All().NumMaterials() == 1 &&
+                          free.Free(i).law_parameter->name == "poisson_ratio");
     }
   }
 
