@@ -38,7 +38,7 @@ struct UnseenOutcome {
   bool is_dishonest;
   Coverage coverage;
   /// Whether the 95 % interval of the shear modulus holds it; empty unless
-  /// that is determined, and neither E nor nu.
+  /// the estimate is of the shear modulus (Estimate::shear_modulus).
   std::optional<bool> is_shear_modulus_held;
   // Errors are relative to E and absolute in nu, as in TrialCells; NaN where
   // unknown.

@@ -21,9 +21,8 @@ namespace elastimate {
 ///
 /// Empty for curved elements, for laws of large strains, for tractions,
 /// pressures and body forces, which act on the area or the volume of the mesh,
-/// and where there is no
-/// energy.  Precondition: the estimate has finite parameters of the scene.
-/// O(num_elements).
+/// and where there is no energy.  Precondition: the estimate has finite
+/// parameters of the scene. O(num_elements).
 [[nodiscard]] std::optional<double> ErrorByFacets(
     const Scene& scene, const Estimate& estimate,
     const Eigen::MatrixXd& displacement);

@@ -21,9 +21,8 @@ namespace elastimate {
 /// it takes the scene; the better minimum is kept.  Outliers are left out and
 /// the others fitted again, until they are those of the fit without them
 /// (OutlierSearch); covariance as by DescribeMinimum.  Of parameters on bounds,
-/// the covariance is that without bounds.  Where neither E nor nu of one
-/// isotropic material is determined, FindShearModulus looks for the shear
-/// modulus.
+/// the covariance is that without bounds.  Where nu of one isotropic
+/// material is not determined, FindShearModulus may look for the shear modulus.
 ///
 /// Where an axis is to be found, descents start from several (StartsOverAxes).
 /// The estimate is not usable where another axis explains the data nearly as

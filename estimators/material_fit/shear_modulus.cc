@@ -11,8 +11,8 @@
 namespace elastimate {
 namespace {
 
-// Between which nu is looked at.  Beyond, elements lock, and mu hardly changes
-// any more.
+// No nu beyond these is given: elements lock there, and mu hardly changes any
+// more.
 constexpr double kSmallestRatioGiven = -0.9;
 constexpr double kLargestRatioGiven = 0.49;
 
@@ -166,16 +166,20 @@ bool FindShearModulus(const Scene& scene, const EstimatorOptions& options,
   const std::vector<Estimate> fits =
       FitsWithRatio(scene, options, fit, ratio, work);
   estimate.work = work;
-  if (fits.empty() || !ShearModulusOf(fits).IsDetermined() ||
+  if (fits.empty()) {
+    return true;
+  }
+  const ModulusEstimate shear_modulus = ShearModulusOf(fits);
+  if (!shear_modulus.IsDetermined() ||
       (judged.IsUsable() &&
-       ShearModulusOf(fits).RelativeError() > RelativeError(estimate))) {
+       shear_modulus.RelativeError() > RelativeError(estimate))) {
     return true;
   }
   estimate.Accept();
   estimate.why_no_standard_error.clear();
   // The end of the range of nu says nothing of the shear modulus.
   estimate.active_bounds.clear();
-  estimate.shear_modulus = ShearModulusOf(fits);
+  estimate.shear_modulus = shear_modulus;
   EnterMissingErrors(fits, estimate);
   return true;
 }

@@ -15,8 +15,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kModulusOfBar = 5e4;
 
-// Of a round bar in tension, as it was measured at the nodes of a mesh of flat
-// facets.
+// Returns a round bar in tension, as it was measured at the nodes of a mesh of
+// flat facets.
 Scene RoundBar(int cells_per_side) {
   constexpr double kPoissonRatio = 0.3;
   constexpr double kStress = 100;
@@ -65,7 +65,7 @@ TEST(FacetError, IsNotThatOfTractions) {
   EXPECT_FALSE(estimate.Has(FindingCode::kFlatFacets));
 }
 
-// Of a determined shear modulus, however large the error of E is.
+// The shear modulus may be well known where E is not.
 TEST(FacetError, CountsBesideTheErrorOfTheShearModulus) {
   const Scene scene = RoundBar(3);
   Estimate estimate;

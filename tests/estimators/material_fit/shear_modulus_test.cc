@@ -134,7 +134,7 @@ TEST(ShearModulusOf, AGivenRatioIsNotLookedFor) {
   EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
 }
 
-// Of fits whose E for each nu is known.
+// These fits have an E that is known for each nu.
 class ShearModulusOfFits : public ::testing::Test {
  protected:
   static Estimate Fitted(double youngs_modulus, double nu, double error_of_e,
@@ -186,7 +186,7 @@ class ShearModulusOfFits : public ::testing::Test {
   std::vector<double> ratios_;
 };
 
-// Of a constant E, mu changes with 1 / (1 + nu).
+// Where E is constant, mu changes with 1 / (1 + nu).
 TEST_F(ShearModulusOfFits, IsAsUncertainAsItsChange) {
   const Estimate estimate = Found([](double) { return 100; });
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
