@@ -196,8 +196,7 @@ std::vector<std::string> ShapeLoads() {
   return {"tension", "torsion", "bending", "gravity", "swelling"};
 }
 
-Scene ShapeScene(const std::string& shape, const std::string& load) {
-  const Mesh mesh = ShapeMesh(shape);
+Scene LoadedScene(const Mesh& mesh, const std::string& load) {
   Scene scene = HeldAtBottom(mesh, mesh, Vector3d::Zero());
   const double low = mesh.nodes.row(2).minCoeff();
   const double height = mesh.nodes.row(2).maxCoeff() - low;
@@ -210,6 +209,10 @@ Scene ShapeScene(const std::string& shape, const std::string& load) {
     force.col(i) = ForceOf(load, mesh.nodes.col(i) - centre, z > 0.9);
   }
   return scene;
+}
+
+Scene ShapeScene(const std::string& shape, const std::string& load) {
+  return LoadedScene(ShapeMesh(shape), load);
 }
 
 }  // namespace elastimate::testing

@@ -18,7 +18,8 @@ Mesh ShapeMesh(const std::string& shape);
 /// and "swelling" (nodal forces on every node).
 std::vector<std::string> ShapeLoads();
 
-/// The shape, held in its lower eighth, with one load case.
+/// The mesh, held in its lower eighth, with one load case.
+Scene LoadedScene(const Mesh& mesh, const std::string& load);
 Scene ShapeScene(const std::string& shape, const std::string& load);
 
 }  // namespace elastimate::testing

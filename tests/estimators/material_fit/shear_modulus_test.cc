@@ -19,13 +19,13 @@
 namespace elastimate {
 namespace {
 
-constexpr double kYoungsModulusOfShape = 5e4;
+constexpr double kYoungsModulusOfBar = 5e4;
 
-Scene TwistedShape(const std::string& shape, double poisson_ratio,
-                   double noise) {
-  Scene scene = testing::ShapeScene(shape, "torsion");
-  testing::MeasureInCutWorld({kYoungsModulusOfShape, poisson_ratio}, scene);
-  testing::AddNoise(noise, 1, scene);
+Scene TwistedBar(double poisson_ratio) {
+  Scene scene = testing::LoadedScene(
+      testing::BoxMesh({3, 3, 5}, {0.3, 0.3, 0.8}), "torsion");
+  testing::MeasureInCutWorld({kYoungsModulusOfBar, poisson_ratio}, scene);
+  testing::AddNoise(0.02, 1, scene);
   return scene;
 }
 
@@ -44,9 +44,9 @@ class ShearModulus : public ::testing::TestWithParam<Torsion> {};
 
 TEST_P(ShearModulus, IsWhatTorsionDetermines) {
   const double nu = GetParam().poisson_ratio;
-  const IsotropicElasticity truth = {kYoungsModulusOfShape, nu};
-  const Estimate estimate = FitAtSmallStrains(
-      GetParam().estimator, TwistedShape("dumbbell", nu, 0.02));
+  const IsotropicElasticity truth = {kYoungsModulusOfBar, nu};
+  const Estimate estimate =
+      FitAtSmallStrains(GetParam().estimator, TwistedBar(nu));
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   ASSERT_TRUE(estimate.shear_modulus.has_value());
   const double error = estimate.shear_modulus->standard_error;
@@ -128,8 +128,7 @@ TEST(ShearModulusOf, AGivenRatioIsNotLookedFor) {
   options.kinematics = Kinematics::kSmall;
   options.known_poisson_ratio = 0.3;
   const Estimate estimate =
-      MakeEstimator("reduced-fe")
-          ->Run(TwistedShape("dumbbell", 0.3, 0.02), options);
+      MakeEstimator("reduced-fe")->Run(TwistedBar(0.3), options);
   EXPECT_FALSE(estimate.shear_modulus.has_value());
   EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
 }
