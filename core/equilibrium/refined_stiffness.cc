@@ -5,14 +5,6 @@
 #include "elastimate/core/solvers/conjugate_gradients.h"
 
 namespace elastimate {
-namespace {
-
-// An iterative solver of the coarsest space need not be more accurate than the
-// preconditioner that it is part of.
-constexpr double kCoarseTolerance = 1e-2;
-
-}  // namespace
-
 RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                    const std::vector<const Supports*>& supports,
                                    SolverKind solver,
@@ -111,15 +103,15 @@ Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
   if (space == Finest()) {
     ++work_.element_passes;
   }
-  return IsFreeIn(space).asDiagonal() * stiffness_->Multiply(space, x);
+  Eigen::MatrixXd forces = stiffness_->Multiply(space, x);
+  forces.array().colwise() *= IsFreeIn(space).array();
+  return forces;
 }
 
 Eigen::MatrixXd RefinedStiffness::Cycle(const Eigen::MatrixXd& force) {
   return VCycle(
       cycle_,
-      [&](const Eigen::MatrixXd& x) {
-        return coarsest_.Solve(x, kCoarseTolerance);
-      },
+      [&](const Eigen::MatrixXd& x) { return coarsest_.Precondition(x); },
       force);
 }
 

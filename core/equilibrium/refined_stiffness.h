@@ -15,14 +15,15 @@ namespace elastimate {
 /// The stiffness, on some supports, of the finest of some spaces that contain
 /// each other.  It is not assembled: conjugate gradients solve with it, and
 /// one VCycle over the spaces preconditions them, with the diagonal blocks of
-/// the nodes.  On the coarsest space a StiffnessSolver solves at the same
-/// moduli.
+/// the nodes.  On the coarsest space a StiffnessSolver of the same moduli
+/// preconditions: it solves with its factor, or runs one cycle of multigrid.
 ///
-/// The iterations do not grow with the mesh.  On blocks and bars an error of
-/// 1e-8 (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20 to 32 (7) at 0.45 and
-/// 45 to 70 (15) at 0.49.  Flat elements take many more: ten times as many
-/// where they are five times as wide as thick.  Once iterations do not
-/// converge, the stiffness is factorised, then and from then on.
+/// The iterations do not grow with the mesh.  On blocks and bars, with a
+/// factor, an error of 1e-8 (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20
+/// to 32 (7) at 0.45 and 45 to 70 (15) at 0.49; with multigrid, a third more.
+/// Flat elements take many more: ten times as many where they are five times as
+/// wide as thick.  Once iterations do not converge, the stiffness is
+/// factorised, then and from then on.
 class RefinedStiffness : public SupportedStiffness {
  public:
   static constexpr int kMostIterations = 200;
@@ -39,7 +40,8 @@ class RefinedStiffness : public SupportedStiffness {
                  bool with_held_rows) override;
 
   /// An iteration takes five element passes of the finest space, four of each
-  /// one between, and a solve on the coarsest, for all columns.
+  /// one between, and StiffnessSolver::Precondition on the coarsest, for all
+  /// columns.
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         const Eigen::MatrixXd& start) override;

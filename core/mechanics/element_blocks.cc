@@ -14,8 +14,9 @@ std::vector<ElementBlock> BlocksOf(const Mesh& mesh,
         std::min(first + elements_per_block, mesh.NumElements());
     int first_node = mesh.elements(0, first);
     int last_node = first_node;
-    for (std::ptrdiff_t corner = 4 * first; corner < 4 * end; ++corner) {
-      const int node = mesh.elements.data()[corner];
+    const std::ptrdiff_t num_nodes = mesh.elements.rows();
+    for (std::ptrdiff_t i = num_nodes * first; i < num_nodes * end; ++i) {
+      const int node = mesh.elements.data()[i];
       first_node = std::min(first_node, node);
       last_node = std::max(last_node, node);
     }
@@ -89,10 +90,10 @@ std::vector<NodeRange> Gaps(const std::vector<NodeRange>& ranges,
 
 }  // namespace
 
-ElementBlocks ChooseElementBlocks(const Mesh& mesh) {
-  constexpr std::ptrdiff_t kSmallestBlock = 4096;
+ElementBlocks ChooseElementBlocks(const Mesh& mesh,
+                                  std::ptrdiff_t smallest_block) {
   ElementBlocks chosen;
-  chosen.blocks = BlocksOf(mesh, kSmallestBlock);
+  chosen.blocks = BlocksOf(mesh, smallest_block);
   while (chosen.blocks.size() > 1 &&
          !AreSuitable(chosen.blocks, mesh.NumNodes())) {
     chosen.blocks = Merged(chosen.blocks);

@@ -33,10 +33,12 @@ struct ElementBlocks {
   std::vector<NodeRange> gaps;
 };
 
-/// Chooses blocks that are as small as they can be while few nodes are in two
-/// of them.  A mesh whose numbering has no locality becomes one block.
-/// O(num_elements) time, less than a tenth of an element pass.
-[[nodiscard]] ElementBlocks ChooseElementBlocks(const Mesh& mesh);
+/// Chooses blocks of at least `smallest_block` elements, except for the last
+/// one, that are as small as they can be while few nodes are in two of them.  A
+/// mesh whose numbering has no locality becomes one block. O(num_elements)
+/// time, less than a tenth of an element pass.
+[[nodiscard]] ElementBlocks ChooseElementBlocks(
+    const Mesh& mesh, std::ptrdiff_t smallest_block = 4096);
 
 }  // namespace elastimate
 

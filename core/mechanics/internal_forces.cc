@@ -8,8 +8,6 @@
 
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/mechanics/law_products.h"
-#include "elastimate/core/mechanics/tensor_stiffness_product.h"
-#include "elastimate/core/mechanics/tet10_stiffness_product.h"
 
 namespace elastimate {
 
@@ -32,6 +30,9 @@ InternalForces::InternalForces(const Mesh& mesh,
   }
   if (is_isotropic_) {
     stiffness_.emplace(parameters_.NumMaterials() > 1 ? parts_.mesh : mesh);
+    if (parameters_.NumMaterials() > 1 && HasQuadraticPass(mesh.kind)) {
+      of_whole_.emplace(mesh);
+    }
   }
 }
 
@@ -122,6 +123,10 @@ Eigen::Matrix2Xd InternalForces::ModuliOfElements(
 
 Eigen::MatrixXd InternalForces::Multiply(
     const Eigen::VectorXd& moduli, const Eigen::MatrixXd& displacements) const {
+  if (is_isotropic_ && HasQuadraticPass(mesh_.kind)) {
+    return (of_whole_ ? of_whole_ : stiffness_)
+        ->MultiplySum(ModuliOfElements(moduli), displacements);
+  }
   Eigen::MatrixXd forces =
       Eigen::MatrixXd::Zero(displacements.rows(), displacements.cols());
   if (!is_isotropic_) {
@@ -133,14 +138,6 @@ Eigen::MatrixXd InternalForces::Multiply(
     AddLawProducts(mesh_, material_of_element_, frames_, tangents,
                    displacements, sum);
     return std::move(sum[0]);
-  }
-  if (mesh_.kind == ElementKind::kTet10) {
-    return MultiplyQuadraticTetrahedra(mesh_, ModuliOfElements(moduli),
-                                       displacements);
-  }
-  if (mesh_.kind == ElementKind::kHex27 || mesh_.kind == ElementKind::kQuad9) {
-    return MultiplyTensorElements(mesh_, ModuliOfElements(moduli),
-                                  displacements);
   }
   const std::vector<Eigen::MatrixXd> products = OfParts(displacements);
   const Eigen::Index dimension = mesh_.Dimension();

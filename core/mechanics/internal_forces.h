@@ -91,7 +91,10 @@ class InternalForces {
   /// empty, and the whole mesh is the part.
   MeshParts parts_;
   bool is_isotropic_;
+  /// The stiffness of the parts, and of the whole mesh where its elements are
+  /// those of HasQuadraticPass; the latter is empty where it is the former.
   std::optional<StiffnessOperator> stiffness_;
+  std::optional<StiffnessOperator> of_whole_;
 };
 
 }  // namespace elastimate

@@ -22,18 +22,20 @@ namespace elastimate {
 namespace HWY_NAMESPACE {
 
 // The records, of this size, of the first nodes of as many elements as there
-// are lanes.  Lanes beyond the last element repeat it.
+// are lanes.  Lanes beyond the last element repeat it.  The first record is
+// that of `first_node`.
 template <int kNodes, int kNodesOfElement, class Value>
 struct NodeRecords {
   Value* record[kNodes][kLanes];
 
   HWY_INLINE NodeRecords(const int* elements, std::ptrdiff_t count,
-                         Value* records, std::ptrdiff_t size) {
+                         Value* records, std::ptrdiff_t first_node,
+                         std::ptrdiff_t size) {
     for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane) {
       const int* const nodes =
           elements + kNodesOfElement * std::min(lane, count - 1);
       for (int i = 0; i < kNodes; ++i) {
-        record[i][lane] = records + size * nodes[i];
+        record[i][lane] = records + size * (nodes[i] - first_node);
       }
     }
   }

@@ -1,36 +1,83 @@
 #include "elastimate/core/mechanics/quadratic_pass.h"
 
 #include <hwy/aligned_allocator.h>
+#include <hwy/cache_control.h>
+#include <omp.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <new>
+#include <vector>
 
 #include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
 namespace {
 
-constexpr Eigen::Index kMostLanes = 8;
-
 using Records = hwy::AlignedFreeUniquePtr<double[]>;
 
-Records AllocateRecords(Eigen::Index size) {
-  Records records = hwy::AllocateAligned<double>(std::size_t(size));
-  if (!records) {
-    throw std::bad_alloc();
+// The memory in which a thread works.
+struct Workspace {
+  Records records;
+  std::vector<double> of_a;
+  std::vector<double> of_p;
+};
+
+std::vector<Workspace> AllocateWorkspaces(const QuadraticMesh& mesh,
+                                          Eigen::Index record_size,
+                                          Eigen::Index num_coefficients) {
+  const ElementBlocks& blocks = mesh.Blocks();
+  // Half of the blocks are worked on at a time.
+  const Eigen::Index most_threads =
+      (Eigen::Index(blocks.blocks.size()) + 1) / 2;
+  std::vector<Workspace> workspaces(
+      omp_in_parallel() != 0
+          ? 1
+          : std::min<Eigen::Index>(most_threads, omp_get_max_threads()));
+  for (Workspace& workspace : workspaces) {
+    workspace.records = hwy::AllocateAligned<double>(
+        std::size_t(record_size * blocks.most_nodes));
+    if (!workspace.records) {
+      throw std::bad_alloc();
+    }
+    workspace.of_a.resize(num_coefficients);
+    workspace.of_p.resize(num_coefficients);
   }
-  return records;
+  return workspaces;
 }
 
-// Copies the values of each node to the first of its record, with zeros behind.
-// Loops of a length that the compiler knows become vectors rather than calls.
+Eigen::Index NumElementsOfLargest(const ElementBlocks& blocks) {
+  Eigen::Index most = 0;
+  for (const ElementBlock& block : blocks.blocks) {
+    most = std::max(most, Eigen::Index(block.end - block.first));
+  }
+  return most;
+}
+
+// Asks for the values of a later node.  Nodes of a mesh that was numbered again
+// are scattered over a column, and without this a pass takes a third longer.
+template <int kDimension, class Value>
+void PrefetchLater(const QuadraticMesh& mesh, std::ptrdiff_t node,
+                   const NodeRange& nodes, Value* values) {
+  constexpr std::ptrdiff_t kNodesAhead = 32;
+  if (node + kNodesAhead < nodes.end) {
+    hwy::Prefetch(values + kDimension * mesh.Node(node + kNodesAhead));
+  }
+}
+
+// Copies the values of each node of a range to the first of its record, with
+// zeros behind.  Loops of a length that the compiler knows become vectors
+// rather than calls.
 template <int kDimension, Eigen::Index kSize>
-void FillNodeRecords(const double* values, Eigen::Index num_nodes,
-                     double* records) {
-  for (Eigen::Index i = 0; i < num_nodes;
-       ++i, records += kSize, values += kDimension) {
+void FillNodeRecords(const QuadraticMesh& mesh, const NodeRange& nodes,
+                     const double* values, double* records) {
+  for (std::ptrdiff_t i = nodes.first; i < nodes.end; ++i, records += kSize) {
+    PrefetchLater<kDimension>(mesh, i, nodes, values);
+    const double* const of_node = values + kDimension * mesh.Node(i);
     double first[kDimension];
     for (int k = 0; k < kDimension; ++k) {
-      first[k] = values[k];
+      first[k] = of_node[k];
     }
     for (int k = 0; k < kDimension; ++k) {
       records[k] = first[k];
@@ -41,76 +88,135 @@ void FillNodeRecords(const double* values, Eigen::Index num_nodes,
   }
 }
 
-// Calls collect(column, records) for one column after the other.
-template <int kDimension, Eigen::Index kSize, class Collect>
-void RunInColumns(const Mesh& mesh, const double* coefficients_of_a,
-                  const double* coefficients_of_p,
-                  const Eigen::MatrixXd& displacement, const RunPass& run,
-                  const Collect& collect) {
-  const Eigen::Index num_nodes = mesh.NumNodes();
-  const Records records = AllocateRecords(kSize * num_nodes);
+// Sets the rows of the nodes that are in no block of even number.
+template <int kDimension>
+void SetGapsToZero(const QuadraticMesh& mesh, Eigen::MatrixXd& result) {
+  for (const NodeRange& gap : mesh.Blocks().gaps) {
+    for (std::ptrdiff_t i = gap.first; i < gap.end; ++i) {
+      result.middleRows<kDimension>(kDimension * mesh.Node(i)).setZero();
+    }
+  }
+}
+
+// Blocks of even number come first to a node.
+template <class Sum>
+void EnterSum(const Sum& sum, bool is_first, double* result) {
+  for (Eigen::Index k = 0; k < sum.size(); ++k) {
+    result[k] = is_first ? sum(k) : result[k] + sum(k);
+  }
+}
+
+QuadraticPass PassOver(const ElementBlock& block, const QuadraticMesh& mesh,
+                       Workspace& workspace) {
   QuadraticPass pass;
-  pass.elements = mesh.elements.data();
-  pass.num_elements = mesh.NumElements();
-  pass.positions = mesh.nodes.data();
-  pass.thickness = mesh.section.thickness;
-  pass.coefficients_of_a = coefficients_of_a;
-  pass.coefficients_of_p = coefficients_of_p;
-  pass.records = records.get();
+  pass.elements = mesh.Element(block.first);
+  pass.num_elements = block.end - block.first;
+  pass.positions = mesh.Positions();
+  pass.thickness = mesh.Thickness();
+  pass.coefficients_of_a =
+      workspace.of_a.empty() ? nullptr : workspace.of_a.data();
+  pass.coefficients_of_p =
+      workspace.of_p.empty() ? nullptr : workspace.of_p.data();
+  pass.first_node = block.nodes.first;
+  pass.records = workspace.records.get();
+  return pass;
+}
+
+template <int kDimension, std::size_t kNumSums>
+using Sums = std::array<Eigen::Matrix<double, kDimension, 1>, kNumSums>;
+
+// Runs a pass for one column after the other.  Before it, `prepare(block,
+// workspace)` sets the coefficients.  After it, `sums_of(record)` returns the
+// sums of a node, which are entered in the results.
+template <int kDimension, Eigen::Index kSize, std::size_t kNumSums,
+          class Prepare, class SumsOf>
+void RunInBlocks(const QuadraticMesh& mesh, const Eigen::MatrixXd& displacement,
+                 const RunPass& run, std::vector<Workspace>& workspaces,
+                 const Prepare& prepare, const SumsOf& sums_of,
+                 const std::array<Eigen::MatrixXd*, kNumSums>& results) {
+  const std::vector<ElementBlock>& blocks = mesh.Blocks().blocks;
+  const auto num_blocks = std::ptrdiff_t(blocks.size());
+  for (Eigen::MatrixXd* const result : results) {
+    result->resize(displacement.rows(), displacement.cols());
+    SetGapsToZero<kDimension>(mesh, *result);
+  }
   for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
-    FillNodeRecords<kDimension, kSize>(displacement.col(column).data(),
-                                       num_nodes, records.get());
-    run(pass);
-    collect(column, records.get());
+    for (const std::ptrdiff_t parity : {0, 1}) {
+#pragma omp parallel for num_threads(int(workspaces.size())) \
+    schedule(dynamic) if (workspaces.size() > 1)
+      for (std::ptrdiff_t b = parity; b < num_blocks; b += 2) {
+        const ElementBlock& block = blocks[b];
+        Workspace& workspace =
+            workspaces[workspaces.size() > 1 ? omp_get_thread_num() : 0];
+        prepare(block, workspace);
+        FillNodeRecords<kDimension, kSize>(mesh, block.nodes,
+                                           displacement.col(column).data(),
+                                           workspace.records.get());
+        run(PassOver(block, mesh, workspace));
+        const double* record = workspace.records.get();
+        for (std::ptrdiff_t i = block.nodes.first; i < block.nodes.end;
+             ++i, record += kSize) {
+          const Sums<kDimension, kNumSums> sums = sums_of(record);
+          for (std::size_t k = 0; k < kNumSums; ++k) {
+            double* const result = results[k]->col(column).data();
+            PrefetchLater<kDimension>(mesh, i, block.nodes, result);
+            EnterSum(sums[k], parity == 0, result + kDimension * mesh.Node(i));
+          }
+        }
+      }
+    }
   }
 }
 
 template <int kDimension>
-void SetProducts(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+void SetProducts(const QuadraticMesh& mesh, const Eigen::MatrixXd& displacement,
                  const RunPass& run, StiffnessProducts& products) {
-  const double share = ShearShareOfJ(mesh.section.model);
-  RunInColumns<kDimension, kSizeForProducts>(
-      mesh, nullptr, nullptr, displacement, run,
-      [&](Eigen::Index column, const double* record) {
-        double* h = products.h.col(column).data();
-        double* j = products.j.col(column).data();
-        for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
-          for (int k = 0; k < kDimension; ++k) {
-            const double a = record[kFour + k];
-            h[k] = a;
-            j[k] = record[2 * kFour + k] - share * a;
-          }
-          record += kSizeForProducts;
-          h += kDimension;
-          j += kDimension;
-        }
-      });
+  const double share = ShearShareOfJ(mesh.Model());
+  std::vector<Workspace> workspaces =
+      AllocateWorkspaces(mesh, kSizeForProducts, 0);
+  RunInBlocks<kDimension, kSizeForProducts, 2>(
+      mesh, displacement, run, workspaces,
+      [](const ElementBlock&, const Workspace&) {},
+      [share](const double* record) -> Sums<kDimension, 2> {
+        using Sum = Eigen::Map<const Eigen::Matrix<double, kDimension, 1>>;
+        const Sum a(record + kFour);
+        return {a, Sum(record + 2 * kFour) - share * a};
+      },
+      {&products.h, &products.j});
 }
 
 template <int kDimension>
-void SetSum(const Mesh& mesh, const Eigen::VectorXd& of_a,
-            const Eigen::VectorXd& of_p, const Eigen::MatrixXd& displacement,
-            const RunPass& run, Eigen::MatrixXd& forces) {
-  RunInColumns<kDimension, kSizeForSum>(
-      mesh, of_a.data(), of_p.data(), displacement, run,
-      [&](Eigen::Index column, const double* record) {
-        double* force = forces.col(column).data();
-        for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
-          for (int k = 0; k < kDimension; ++k) {
-            force[k] = record[kFour + k];
-          }
-          record += kSizeForSum;
-          force += kDimension;
+Eigen::MatrixXd SumOf(const QuadraticMesh& mesh,
+                      const Eigen::Matrix2Xd& coefficients,
+                      const Eigen::MatrixXd& displacement, const RunPass& run) {
+  // J q = p - share a.
+  const double share = ShearShareOfJ(mesh.Model());
+  std::vector<Workspace> workspaces = AllocateWorkspaces(
+      mesh, kSizeForSum, NumElementsOfLargest(mesh.Blocks()) + kMostLanes);
+  Eigen::MatrixXd forces;
+  RunInBlocks<kDimension, kSizeForSum, 1>(
+      mesh, displacement, run, workspaces,
+      [&](const ElementBlock& block, Workspace& workspace) {
+        for (std::ptrdiff_t e = block.first; e < block.end; ++e) {
+          const auto of_element = coefficients.col(mesh.ElementOfMesh(e));
+          workspace.of_a[e - block.first] =
+              of_element(0) - share * of_element(1);
+          workspace.of_p[e - block.first] = of_element(1);
         }
-      });
+      },
+      [](const double* record) -> Sums<kDimension, 1> {
+        return {Eigen::Map<const Eigen::Matrix<double, kDimension, 1>>(record +
+                                                                       kFour)};
+      },
+      {&forces});
+  return forces;
 }
 
 }  // namespace
 
-void MultiplyByPass(const Mesh& mesh, const Eigen::MatrixXd& displacement,
-                    const RunPass& run, StiffnessProducts& products) {
-  products.h.resize(displacement.rows(), displacement.cols());
-  products.j.resize(displacement.rows(), displacement.cols());
+void MultiplyByPass(const QuadraticMesh& mesh,
+                    const Eigen::MatrixXd& displacement, const RunPass& run,
+                    StiffnessProducts& products) {
   if (mesh.Dimension() == 3) {
     SetProducts<3>(mesh, displacement, run, products);
   } else {
@@ -118,24 +224,13 @@ void MultiplyByPass(const Mesh& mesh, const Eigen::MatrixXd& displacement,
   }
 }
 
-Eigen::MatrixXd MultiplyByPass(const Mesh& mesh,
+Eigen::MatrixXd MultiplyByPass(const QuadraticMesh& mesh,
                                const Eigen::Matrix2Xd& coefficients,
                                const Eigen::MatrixXd& displacement,
                                const RunPass& run) {
-  // J q = p - share a.
-  Eigen::VectorXd of_a = Eigen::VectorXd::Zero(mesh.NumElements() + kMostLanes);
-  Eigen::VectorXd of_p = of_a;
-  of_a.head(mesh.NumElements()) =
-      coefficients.row(0) -
-      ShearShareOfJ(mesh.section.model) * coefficients.row(1);
-  of_p.head(mesh.NumElements()) = coefficients.row(1);
-  Eigen::MatrixXd forces(displacement.rows(), displacement.cols());
-  if (mesh.Dimension() == 3) {
-    SetSum<3>(mesh, of_a, of_p, displacement, run, forces);
-  } else {
-    SetSum<2>(mesh, of_a, of_p, displacement, run, forces);
-  }
-  return forces;
+  return mesh.Dimension() == 3
+             ? SumOf<3>(mesh, coefficients, displacement, run)
+             : SumOf<2>(mesh, coefficients, displacement, run);
 }
 
 }  // namespace elastimate

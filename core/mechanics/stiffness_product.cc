@@ -13,17 +13,19 @@
 namespace elastimate {
 namespace {
 
-// Multiplies for all kinds but linear tetrahedra.
+void MultiplyQuadratic(const QuadraticMesh& mesh,
+                       const Eigen::MatrixXd& displacement,
+                       StiffnessProducts& products) {
+  if (mesh.Kind() == ElementKind::kTet10) {
+    MultiplyQuadraticTetrahedra(mesh, displacement, products);
+  } else {
+    MultiplyTensorElements(mesh, displacement, products);
+  }
+}
+
+// Multiplies for all kinds but linear tetrahedra and those of HasQuadraticPass.
 void MultiplyOtherKinds(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                         StiffnessProducts& products) {
-  if (mesh.kind == ElementKind::kTet10) {
-    MultiplyQuadraticTetrahedra(mesh, displacement, products);
-    return;
-  }
-  if (mesh.kind == ElementKind::kHex27 || mesh.kind == ElementKind::kQuad9) {
-    MultiplyTensorElements(mesh, displacement, products);
-    return;
-  }
   products.h.setZero(displacement.rows(), displacement.cols());
   products.j.setZero(displacement.rows(), displacement.cols());
   AddStrainProducts(mesh, displacement, products.h, products.j);
@@ -39,6 +41,8 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
   if (mesh.kind == ElementKind::kTet4) {
     MultiplyLinearTetrahedra(mesh, ChooseElementBlocks(mesh), {}, displacement,
                              1, products);
+  } else if (HasQuadraticPass(mesh.kind)) {
+    MultiplyQuadratic(QuadraticMesh(mesh), displacement, products);
   } else {
     MultiplyOtherKinds(mesh, displacement, products);
   }
@@ -48,6 +52,9 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
 StiffnessOperator::StiffnessOperator(const Mesh& mesh, int num_threads)
     : mesh_(mesh), num_threads_(num_threads) {
   assert(num_threads >= 1);
+  if (HasQuadraticPass(mesh.kind)) {
+    quadratic_.emplace(QuadraticMesh::InBlocks(mesh));
+  }
   if (mesh.kind != ElementKind::kTet4) {
     return;
   }
@@ -65,9 +72,20 @@ void StiffnessOperator::Multiply(const Eigen::MatrixXd& displacement,
   if (mesh_.kind == ElementKind::kTet4) {
     MultiplyLinearTetrahedra(IsReordered() ? reordered_ : mesh_, blocks_,
                              places_, displacement, num_threads_, products);
+  } else if (quadratic_) {
+    MultiplyQuadratic(*quadratic_, displacement, products);
   } else {
     MultiplyOtherKinds(mesh_, displacement, products);
   }
+}
+
+Eigen::MatrixXd StiffnessOperator::MultiplySum(
+    const Eigen::Matrix2Xd& coefficients,
+    const Eigen::MatrixXd& displacement) const {
+  return mesh_.kind == ElementKind::kTet10
+             ? MultiplyQuadraticTetrahedra(*quadratic_, coefficients,
+                                           displacement)
+             : MultiplyTensorElements(*quadratic_, coefficients, displacement);
 }
 
 }  // namespace elastimate

@@ -165,7 +165,7 @@ struct Tangents {
     constexpr int kVertices = 1 << kDimension;
     constexpr int kNodes = PowerOfThree(kDimension);
     const NodeRecords<kVertices, kNodes, const double> nodes(
-        elements, count, positions, kDimension);
+        elements, count, positions, 0, kDimension);
     Vector x[kVertices];
     for (int i = 0; i < kVertices; ++i) {
       x[i] = LoadVector(nodes.record[i]);
@@ -362,7 +362,8 @@ HWY_INLINE void AddLanes(const QuadraticPass& pass,
   const int* const elements = pass.elements + kNodes * first;
   const Tangents<kDimension> tangents(elements, count, pass.positions);
   const NodeRecords<kNodes, kNodes, double> nodes(
-      elements, count, pass.records, kIsSum ? kSizeForSum : kSizeForProducts);
+      elements, count, pass.records, pass.first_node,
+      kIsSum ? kSizeForSum : kSizeForProducts);
   VectorField<kDimension> gradient[kDimension];
   SetReferenceGradient<kDimension>(tables, nodes, gradient);
   Values thickness = hn::Set(d, pass.thickness);
@@ -442,16 +443,17 @@ RunPass BestPass(ElementKind kind) {
 
 }  // namespace
 
-void MultiplyTensorElements(const Mesh& mesh,
+void MultiplyTensorElements(const QuadraticMesh& mesh,
                             const Eigen::MatrixXd& displacement,
                             StiffnessProducts& products) {
-  MultiplyByPass(mesh, displacement, BestPass(mesh.kind), products);
+  MultiplyByPass(mesh, displacement, BestPass(mesh.Kind()), products);
 }
 
-Eigen::MatrixXd MultiplyTensorElements(const Mesh& mesh,
+Eigen::MatrixXd MultiplyTensorElements(const QuadraticMesh& mesh,
                                        const Eigen::Matrix2Xd& coefficients,
                                        const Eigen::MatrixXd& displacement) {
-  return MultiplyByPass(mesh, coefficients, displacement, BestPass(mesh.kind));
+  return MultiplyByPass(mesh, coefficients, displacement,
+                        BestPass(mesh.Kind()));
 }
 
 }  // namespace elastimate

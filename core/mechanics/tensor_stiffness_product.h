@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/mechanics/quadratic_mesh.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
-#include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate {
 
@@ -23,14 +23,14 @@ namespace elastimate {
 /// (AVX-512), four (AVX2) elements or one at a time.  On one processor the
 /// values of a column do not depend on the other columns.
 /// Cost: one element pass.
-void MultiplyTensorElements(const Mesh& mesh,
+void MultiplyTensorElements(const QuadraticMesh& mesh,
                             const Eigen::MatrixXd& displacement,
                             StiffnessProducts& products);
 
 /// Returns the sum over the elements of c_0 H_e q + c_1 J_e q, with the
 /// coefficients c of each element (2 x num_elements), for each column of
 /// `displacement`.  It takes less time than both products.
-Eigen::MatrixXd MultiplyTensorElements(const Mesh& mesh,
+Eigen::MatrixXd MultiplyTensorElements(const QuadraticMesh& mesh,
                                        const Eigen::Matrix2Xd& coefficients,
                                        const Eigen::MatrixXd& displacement);
 

@@ -197,7 +197,7 @@ template <bool kIsSum>
 HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
                             std::ptrdiff_t count) {
   const int* const elements = pass.elements + 10 * first;
-  const Barycentric g(Corners(elements, count, pass.positions, 3), count);
+  const Barycentric g(Corners(elements, count, pass.positions, 0, 3), count);
   const Lanes d;
   Values a = hn::Zero(d);
   Values p = hn::Zero(d);
@@ -205,7 +205,7 @@ HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
     a = hn::LoadU(d, pass.coefficients_of_a + first);
     p = hn::LoadU(d, pass.coefficients_of_p + first);
   }
-  const Nodes nodes(elements, count, pass.records,
+  const Nodes nodes(elements, count, pass.records, pass.first_node,
                     kIsSum ? kSizeForSum : kSizeForProducts);
   const VertexStrains e(nodes, g);
   if (kIsSum) {
@@ -254,17 +254,17 @@ void RunBestPass(const QuadraticPass& pass) {
 
 }  // namespace
 
-void MultiplyQuadraticTetrahedra(const Mesh& mesh,
+void MultiplyQuadraticTetrahedra(const QuadraticMesh& mesh,
                                  const Eigen::MatrixXd& displacement,
                                  StiffnessProducts& products) {
-  assert(mesh.kind == ElementKind::kTet10);
+  assert(mesh.Kind() == ElementKind::kTet10);
   MultiplyByPass(mesh, displacement, RunBestPass, products);
 }
 
 Eigen::MatrixXd MultiplyQuadraticTetrahedra(
-    const Mesh& mesh, const Eigen::Matrix2Xd& coefficients,
+    const QuadraticMesh& mesh, const Eigen::Matrix2Xd& coefficients,
     const Eigen::MatrixXd& displacement) {
-  assert(mesh.kind == ElementKind::kTet10);
+  assert(mesh.Kind() == ElementKind::kTet10);
   return MultiplyByPass(mesh, coefficients, displacement, RunBestPass);
 }
 

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/mechanics/quadratic_mesh.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
-#include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate {
 
@@ -29,7 +29,7 @@ namespace elastimate {
 /// (AVX-512), four (AVX2) elements or one at a time.  On one processor the
 /// values of a column do not depend on the other columns.
 /// Cost: one element pass, about four times that of linear tetrahedra.
-void MultiplyQuadraticTetrahedra(const Mesh& mesh,
+void MultiplyQuadraticTetrahedra(const QuadraticMesh& mesh,
                                  const Eigen::MatrixXd& displacement,
                                  StiffnessProducts& products);
 
@@ -37,7 +37,7 @@ void MultiplyQuadraticTetrahedra(const Mesh& mesh,
 /// coefficients c of each element (2 x num_elements), for each column of
 /// `displacement`.  It takes two thirds of the time of both products.
 Eigen::MatrixXd MultiplyQuadraticTetrahedra(
-    const Mesh& mesh, const Eigen::Matrix2Xd& coefficients,
+    const QuadraticMesh& mesh, const Eigen::Matrix2Xd& coefficients,
     const Eigen::MatrixXd& displacement);
 
 }  // namespace elastimate

@@ -37,13 +37,9 @@ class Surface {
       : mesh_(mesh),
         facets_(facets),
         num_vertices_(mesh.Topology().NumVerticesOfFace()),
-        normals_(mesh.Dimension(), facets.cols()),
+        normals_(UnitNormals(mesh, facets)),
         corners_(mesh.NumNodes()) {
     for (Eigen::Index i = 0; i < facets.cols(); ++i) {
-      normals_.col(i) = WeightsOfFacet(mesh, facets.col(i))
-                            .area_vector.rowwise()
-                            .sum()
-                            .normalized();
       for (int k = 0; k < num_vertices_; ++k) {
         corners_[facets(k, i)].push_back({i, WeightAt(mesh, facets.col(i), k)});
       }

@@ -279,6 +279,17 @@ FacetWeights WeightsOfFacet(const Mesh& mesh,
   }
 }
 
+Eigen::MatrixXd UnitNormals(const Mesh& mesh, const Eigen::MatrixXi& facets) {
+  Eigen::MatrixXd normals(mesh.Dimension(), facets.cols());
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    normals.col(i) = WeightsOfFacet(mesh, facets.col(i))
+                         .area_vector.rowwise()
+                         .sum()
+                         .normalized();
+  }
+  return normals;
+}
+
 double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets) {
   double area = 0;
   for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {

@@ -55,6 +55,11 @@ struct FacetWeights {
 [[nodiscard]] FacetWeights WeightsOfFacet(
     const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet);
 
+/// Returns the mean outward normal of each facet, of length 1: dimension x
+/// num_facets.  O(num_facets).
+[[nodiscard]] Eigen::MatrixXd UnitNormals(const Mesh& mesh,
+                                          const Eigen::MatrixXi& facets);
+
 /// Returns the area of facets with nodes in range [length^2].  O(num_facets).
 [[nodiscard]] double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets);
 

@@ -54,6 +54,7 @@ OrderedMesh OrderForLocality(const Mesh& mesh) {
   ordered.mesh.kind = mesh.kind;
   ordered.mesh.section = mesh.section;
   ordered.places.reserve(mesh.NumNodes());
+  ordered.element_places.reserve(mesh.NumElements());
   ordered.mesh.elements.resize(mesh.elements.rows(), mesh.NumElements());
   Eigen::Index num_elements = 0;
   const auto find = [&](int node) {
@@ -75,6 +76,7 @@ OrderedMesh OrderForLocality(const Mesh& mesh) {
           continue;
         }
         is_ordered[element] = true;
+        ordered.element_places.push_back(static_cast<int>(element));
         for (Eigen::Index i = 0; i < mesh.elements.rows(); ++i) {
           ordered.mesh.elements(i, num_elements) =
               find(mesh.elements(i, element));

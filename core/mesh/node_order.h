@@ -18,6 +18,7 @@ bool HasLocality(const Mesh& mesh);
 struct OrderedMesh {
   Mesh mesh;                ///< Without regions.
   std::vector<int> places;  ///< Its node i is node places[i] of the other mesh.
+  std::vector<int> element_places;  ///< Likewise for elements.
 };
 
 /// Returns the mesh with its nodes in the order in which a breadth-first search

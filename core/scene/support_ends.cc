@@ -24,13 +24,9 @@ class SurfaceFacets {
  public:
   explicit SurfaceFacets(const Mesh& mesh)
       : facets_(BoundaryFacets(mesh)),
-        normals_(mesh.Dimension(), facets_.cols()),
+        normals_(UnitNormals(mesh, facets_)),
         of_node_(mesh.NumNodes()) {
     for (Eigen::Index facet = 0; facet < facets_.cols(); ++facet) {
-      normals_.col(facet) = WeightsOfFacet(mesh, facets_.col(facet))
-                                .area_vector.rowwise()
-                                .sum()
-                                .normalized();
       for (const int node : facets_.col(facet)) {
         of_node_[node].push_back(facet);
       }

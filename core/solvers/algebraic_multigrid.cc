@@ -214,6 +214,12 @@ bool AlgebraicMultigrid::TakeFinest() {
   return AddSpace(rows_.Matrix());
 }
 
+Eigen::MatrixXd AlgebraicMultigrid::Cycle(const Eigen::MatrixXd& force) const {
+  return VCycle(
+      cycle_, [&](const Eigen::MatrixXd& own) { return SolveCoarsest(own); },
+      force);
+}
+
 std::optional<Eigen::MatrixXd> AlgebraicMultigrid::Solve(
     const Eigen::MatrixXd& right_hand_sides, double tolerance,
     const Eigen::MatrixXd& start) {
@@ -242,12 +248,8 @@ std::optional<Eigen::MatrixXd> AlgebraicMultigrid::SolveOnce(
       [&](const Eigen::MatrixXd& x) {
         return MultiplyAccurately(rows_.Matrix(), x);
       },
-      [&](const Eigen::MatrixXd& x) {
-        return VCycle(
-            cycle_,
-            [&](const Eigen::MatrixXd& own) { return SolveCoarsest(own); }, x);
-      },
-      right_hand_sides, start, options);
+      [&](const Eigen::MatrixXd& x) { return Cycle(x); }, right_hand_sides,
+      start, options);
   num_iterations_ += result.iterations;
   if (!result.has_converged) {
     are_spaces_slow_ = true;

@@ -40,6 +40,8 @@ class AlgebraicMultigrid {
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
                                        double tolerance,
                                        const Eigen::MatrixXd& start);
+  /// Runs the V-cycle that preconditions Solve.
+  Eigen::MatrixXd Cycle(const Eigen::MatrixXd& force) const;
   int NumIterations() const { return num_iterations_; }
   int NumSetUps() const { return num_set_ups_; }
 

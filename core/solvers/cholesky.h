@@ -41,6 +41,9 @@ class Cholesky : public LinearSolver {
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
                                        double tolerance,
                                        const Eigen::MatrixXd& start) override;
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& columns) override {
+    return *Solve(columns, 0, {});
+  }
 
   /// Returns the floating-point operations of a factorisation.
   double FactorizationFlops() const;

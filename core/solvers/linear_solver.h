@@ -34,6 +34,11 @@ class LinearSolver {
       const Eigen::MatrixXd& right_hand_sides, double tolerance,
       const Eigen::MatrixXd& start) = 0;
 
+  /// Returns M x for each column, where M is symmetric positive definite and
+  /// the condition number of M A is small: A^-1 of a direct solver, and one
+  /// cycle of multigrid.  Precondition: as for Solve.
+  virtual Eigen::MatrixXd Precondition(const Eigen::MatrixXd& columns) = 0;
+
   /// Returns the iterations of all columns until now; 0 for a direct solver.
   virtual int NumIterations() const { return 0; }
   /// Returns how often coarse spaces were set up; 0 for a direct solver.

@@ -98,6 +98,13 @@ class MultigridOfOneRank : public LinearSolver {
         multigrid_.Solve(free_rows_.InBlocks(right_hand_sides), tolerance,
                          free_rows_.InBlocks(start)));
   }
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& columns) override {
+    if (columns.cols() == 0) {
+      return columns;
+    }
+    return *free_rows_.FromBlocks(
+        multigrid_.Cycle(free_rows_.InBlocks(columns)));
+  }
   int NumIterations() const override { return multigrid_.NumIterations(); }
   int NumSetUps() const override { return multigrid_.NumSetUps(); }
 
@@ -108,7 +115,14 @@ class MultigridOfOneRank : public LinearSolver {
 };
 
 // What rank 0 asks the others for.
-enum class Task : std::int64_t { kMake, kFactorize, kSolve, kForget, kEnd };
+enum class Task : std::int64_t {
+  kMake,
+  kFactorize,
+  kSolve,
+  kPrecondition,
+  kForget,
+  kEnd
+};
 
 struct Order {
   Task task;
@@ -288,6 +302,15 @@ class MultigridOfRanks : public LinearSolver {
         own_->multigrid.Solve(force, tolerance, own_start);
     return own ? free_rows_.FromBlocks(WithOthers(*own)) : std::nullopt;
   }
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& columns) override {
+    if (columns.cols() == 0) {
+      return columns;
+    }
+    const Step step(ranks_);
+    Tell(ranks_, {Task::kPrecondition, number_, columns.cols()});
+    return *free_rows_.FromBlocks(WithOthers(
+        own_->multigrid.Cycle(SendOthers(free_rows_.InBlocks(columns)))));
+  }
   int NumIterations() const override { return own_->multigrid.NumIterations(); }
   int NumSetUps() const override { return own_->multigrid.NumSetUps(); }
 
@@ -351,6 +374,13 @@ std::unique_ptr<SystemOfRank> ReceiveSystem(
   return system;
 }
 
+void ServePrecondition(const Ranks& ranks, const Order& order,
+                       SystemOfRank& system) {
+  const Eigen::MatrixXd columns = ReceiveColumns(
+      ranks, 0, system.rows.Matrix().rows.NumRows(), order.columns);
+  SendColumns(ranks, 0, system.multigrid.Cycle(columns));
+}
+
 void ServeSolve(const Ranks& ranks, const Order& order, SystemOfRank& system) {
   const Eigen::Index num_rows = system.rows.Matrix().rows.NumRows();
   const Eigen::MatrixXd force =
@@ -404,6 +434,8 @@ void ServeSolves(const AlgebraicMultigrid::FindSpaces& find_spaces,
       static_cast<void>(system.multigrid.Factorize());
     } else if (order.task == Task::kSolve) {
       ServeSolve(ranks, order, *systems.at(order.system));
+    } else if (order.task == Task::kPrecondition) {
+      ServePrecondition(ranks, order, *systems.at(order.system));
     } else {
       systems.erase(order.system);
     }

@@ -196,4 +196,13 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
   return shared.degrees_of_freedom.Extend(*solution);
 }
 
+Eigen::MatrixXd StiffnessSolver::Precondition(const Eigen::MatrixXd& all) {
+  if (!FactorizeAgain()) {
+    poisson_ratio_ = kNaN;
+    return Eigen::MatrixXd::Constant(all.rows(), all.cols(), kNaN);
+  }
+  const DegreesOfFreedom& dofs = shared_->degrees_of_freedom;
+  return dofs.Extend(shared_->solver->Precondition(dofs.Restrict(all)));
+}
+
 }  // namespace elastimate

@@ -109,6 +109,11 @@ class StiffnessSolver {
                         double tolerance = kAccurate,
                         const Eigen::MatrixXd& start = {});
 
+  /// Returns LinearSolver::Precondition of the free rows of each column
+  /// (num_dofs x n), and zeros in the held rows; NaN where the last matrix is
+  /// factorised again and is singular.  Precondition: as for Solve.
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all);
+
   /// Returns nu of the present factorisation; NaN when there is none, or when
   /// it is of blocks.
   double PoissonRatio() const { return poisson_ratio_; }

@@ -64,7 +64,7 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
 
 // The outliers that are found when supports next to them are left out as well.
 std::vector<Outlier> OutliersWithoutSuspects(
-    const Scene& scene, const FitFunction& fit_scene,
+    const Scene& scene, const FitFunction& fit_without,
     const ObservedDisplacements& observed, const MaterialFit& fit,
     const std::vector<Outlier>& outliers, Work& work) {
   std::vector<Outlier> left_out = SuspectedSupports(scene, outliers);
@@ -72,8 +72,7 @@ std::vector<Outlier> OutliersWithoutSuspects(
     return outliers;
   }
   left_out.insert(left_out.end(), outliers.begin(), outliers.end());
-  const MaterialFit other =
-      fit_scene(WithoutOutliers(scene, left_out), fit.Variables());
+  const MaterialFit other = fit_without(left_out, fit.Variables());
   work = work + other.estimate.work;
   return other.displacement.size() == 0
              ? outliers
@@ -82,7 +81,7 @@ std::vector<Outlier> OutliersWithoutSuspects(
 
 }  // namespace
 
-InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_scene,
+InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_without,
                            const MaterialFit& of_all) {
   constexpr int kRounds = 8;
   // What more points contradict is wrong in another way.
@@ -100,7 +99,7 @@ InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_scene,
       fit.estimate.work = work;
       return;
     }
-    fit = fit_scene(WithoutOutliers(scene, outliers), fit.Variables());
+    fit = fit_without(outliers, fit.Variables());
     fit.estimate.work = fit.estimate.work + work;
   };
   Work of_suspects;
@@ -108,7 +107,7 @@ InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_scene,
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
     std::vector<Outlier> outliers = OutliersOf(scene, observed, fit, left_out);
     if (outliers == left_out) {
-      outliers = OutliersWithoutSuspects(scene, fit_scene, observed, fit,
+      outliers = OutliersWithoutSuspects(scene, fit_without, observed, fit,
                                          outliers, of_suspects);
     }
     // Others were left out before, and led here.

@@ -19,9 +19,11 @@ struct InlierFit {
   std::vector<Outlier> left_out;
 };
 
-/// Fits the displacements of a scene from some variables on.
-using FitFunction = std::function<MaterialFit(
-    const Scene& scene, const std::optional<Eigen::VectorXd>& start)>;
+/// Fits the displacements of a scene without those of some points, from some
+/// variables on.
+using FitFunction =
+    std::function<MaterialFit(const std::vector<Outlier>& left_out,
+                              const std::optional<Eigen::VectorXd>& start)>;
 
 /// Fits again without the outliers of a fit of all (OutlierSearch), until they
 /// are those of the fit without them; only those that lie apart

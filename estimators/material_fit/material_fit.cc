@@ -3,12 +3,14 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/certified_descent.h"
 #include "elastimate/estimators/material_fit/facet_error.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
+#include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/material_fit/refined_fit.h"
 #include "elastimate/estimators/material_fit/shear_modulus.h"
 
@@ -30,11 +32,13 @@ class ComputedFit {
     }
     InlierFit inliers = LeaveOutliersOut(
         scene,
-        [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
-          if (HasUnknownMotion(others)) {
-            return FitSpace(others, options_, descent_, from);
+        [&](const std::vector<Outlier>& left_out,
+            const std::optional<Eigen::VectorXd>& from) {
+          if (HasUnknownMotion(scene)) {
+            return FitSpace(WithoutOutliers(scene, left_out), options_,
+                            descent_, from);
           }
-          space_.Measure(others, SpaceFit::Rows::kOther);
+          space_.Measure(scene, SpaceFit::Rows::kOther, left_out);
           has_other_rows_ = true;
           return FitFrom(from);
         },

@@ -152,11 +152,9 @@ std::vector<Outlier> OutliersApart(const Scene& scene,
   return apart;
 }
 
-Scene WithoutOutliers(const Scene& scene,
-                      const std::vector<Outlier>& outliers) {
-  Scene others = scene;
+void LeaveOut(const std::vector<Outlier>& outliers, Scene& scene) {
   for (const Outlier& outlier : outliers) {
-    LoadCase& load_case = others.load_cases[outlier.load_case];
+    LoadCase& load_case = scene.load_cases[outlier.load_case];
     if (outlier.is_point) {
       load_case.points.displacement.col(outlier.index)
           .setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -168,6 +166,12 @@ Scene WithoutOutliers(const Scene& scene,
     }
     load_case.observed.col(outlier.index).setConstant(false);
   }
+}
+
+Scene WithoutOutliers(const Scene& scene,
+                      const std::vector<Outlier>& outliers) {
+  Scene others = scene;
+  LeaveOut(outliers, others);
   return others;
 }
 

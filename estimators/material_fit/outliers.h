@@ -47,7 +47,9 @@ std::vector<Outlier> OutliersApart(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const std::vector<Outlier>& outliers);
 
-/// The scene without what was measured at these points.
+/// Takes what was measured at these points out of a scene, or returns the scene
+/// without it.
+void LeaveOut(const std::vector<Outlier>& outliers, Scene& scene);
 Scene WithoutOutliers(const Scene& scene, const std::vector<Outlier>& outliers);
 
 }  // namespace elastimate

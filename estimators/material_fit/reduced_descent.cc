@@ -248,13 +248,29 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
 bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
-  const int most = misfit_.SmallStrainModel().IsRefined()
-                       ? kMostIterationsByCycle
-                       : kMostIterationsByFactor;
-  const std::optional<int> iterations = SolveNearby(
-      moduli_, forces, tolerances, most, misfit_.SmallStrainModel(), x);
-  element_passes_ += 1 + iterations.value_or(most);
-  return iterations.has_value();
+  Equilibrium& model = misfit_.SmallStrainModel();
+  if (!model.IsRefined()) {
+    const std::optional<int> iterations = SolveNearby(
+        moduli_, forces, tolerances, kMostIterationsByFactor, model, x);
+    element_passes_ += 1 + iterations.value_or(kMostIterationsByFactor);
+    return iterations.has_value();
+  }
+  // A pass over quadratic elements takes as long for each column, and the
+  // vectors of one column of each load case need less memory.
+  const Eigen::Index n = x.cols() / misfit_.Observed().NumLoadCases();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto of_cases = Eigen::seq(i, Eigen::last, n);
+    Eigen::MatrixXd columns = x(Eigen::all, of_cases);
+    const std::optional<int> iterations =
+        SolveNearby(moduli_, forces(Eigen::all, of_cases), tolerances(of_cases),
+                    kMostIterationsByCycle, model, columns);
+    element_passes_ += 1 + iterations.value_or(kMostIterationsByCycle);
+    if (!iterations) {
+      return false;
+    }
+    x(Eigen::all, of_cases) = columns;
+  }
+  return true;
 }
 
 bool ReducedDescent::Check(const BoundedMinimum& minimum) {

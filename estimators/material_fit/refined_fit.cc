@@ -132,14 +132,15 @@ class Refinement {
     has_rival_axis_ = has_rival_axis_ || space->Fit().has_rival_axis;
     return space;
   }
-  /// Fits what another scene measured of the same specimen in the same space.
-  void Refit(const Scene& others, const std::optional<Eigen::VectorXd>& start,
+  /// Fits a scene in the same space without some outliers.
+  void Refit(const Scene& scene, const std::vector<Outlier>& left_out,
+             const std::optional<Eigen::VectorXd>& start,
              const std::vector<const Scene*>& coarser,
              std::unique_ptr<SpaceFit>& space) {
     if (HasUnknownMotion(scene_)) {
-      space = MinimizeOn(others, start, coarser);
+      space = MinimizeOn(WithoutOutliers(scene, left_out), start, coarser);
     } else {
-      space->Measure(others, SpaceFit::Rows::kOther);
+      space->Measure(scene, SpaceFit::Rows::kOther, left_out);
       space->Minimize(descent_, start);
     }
   }
@@ -200,9 +201,10 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
   bool is_refitted = false;
   const InlierFit inliers = LeaveOutliersOut(
       quadratic,
-      [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
+      [&](const std::vector<Outlier>& left_out,
+          const std::optional<Eigen::VectorXd>& from) {
         is_refitted = true;
-        Refit(others, from, coarser, chain.quadratic);
+        Refit(quadratic, left_out, from, coarser, chain.quadratic);
         return chain.quadratic->Fit();
       },
       of_all);
@@ -217,15 +219,13 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
   const std::optional<Eigen::VectorXd> variables =
       are_some_left_out ? inliers.fit.Variables() : of_all.Variables();
   // The last fit of the search may have been of others.
-  Refit(WithoutOutliers(quadratic, left_out), variables, coarser,
-        chain.quadratic);
+  Refit(quadratic, left_out, variables, coarser, chain.quadratic);
   chain.work = chain.work + chain.quadratic->Fit().estimate.work;
   if (are_some_left_out) {
     chain.left_out = left_out;
     chain.of_inliers = inliers.fit.estimate;
     if (linear_) {
-      Refit(WithoutOutliers(scene_, left_out), linear_->Fit().Variables(), {},
-            linear_);
+      Refit(scene_, left_out, linear_->Fit().Variables(), {}, linear_);
       chain.work = chain.work + linear_->Fit().estimate.work;
     }
   }
@@ -361,7 +361,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
   Chain chain = FitQuadratic(quadratic, last);
   if (!quadratic.supports.in_doubt.empty() && chain.Finest().Fit().minimum) {
     HoldNodesInDoubt(quadratic.supports);
-    Chain held = FitQuadratic(quadratic, last);
+    Chain held = FitQuadratic(quadratic, chain.Finest().Fit().Variables());
     if (held.Finest().Fit().minimum) {
       chain = MeanOf(std::move(held), std::move(chain));
     }

@@ -14,6 +14,7 @@
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
+#include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/material_fit/reduced_descent.h"
 #include "elastimate/estimators/material_fit/small_strain_start.h"
 #include "elastimate/estimators/misfit/descent.h"
@@ -82,13 +83,15 @@ SpaceFit::SpaceFit(Scene scene, const EstimatorOptions& options,
       is_finest_of_several_(!coarser.empty()),
       misfit_(WithFinest(coarser, scene_), options, shared) {}
 
-void SpaceFit::Measure(const Scene& scene, Rows rows) {
+void SpaceFit::Measure(const Scene& scene, Rows rows,
+                       const std::vector<Outlier>& left_out) {
   for (std::size_t k = 0; k < scene_.load_cases.size(); ++k) {
     LoadCase& load_case = scene_.load_cases[k];
     load_case.displacement = scene.load_cases[k].displacement;
     load_case.observed = scene.load_cases[k].observed;
     load_case.points = scene.load_cases[k].points;
   }
+  LeaveOut(left_out, scene_);
   if (rows == Rows::kSame) {
     misfit_.Remeasure(scene_);
     return;

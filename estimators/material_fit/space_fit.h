@@ -86,10 +86,12 @@ class SpaceFit {
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
   /// Takes what a scene that differs in its measured displacements alone has
-  /// measured: at the same nodes, or at others.  Minimize starts anew then.
-  /// Precondition: no unknown motions.
+  /// measured: at the same nodes, or at others, without some outliers.
+  /// Minimize starts anew then.
+  /// Preconditions: no unknown motions; other rows, if there are outliers.
   enum class Rows { kSame, kOther };
-  void Measure(const Scene& scene, Rows rows);
+  void Measure(const Scene& scene, Rows rows,
+               const std::vector<Outlier>& left_out = {});
 
   /// The square sum of what is left of the displacements at the minimum.
   double SquareSum() const { return square_sum_; }

@@ -146,12 +146,13 @@ TEST_F(QuadraticTetrahedra, ProductOfCoefficientsIsTheSumOverElements) {
                 q_;
   }
   const Eigen::MatrixXd product =
-      MultiplyQuadraticTetrahedra(mesh_, coefficients, q_);
+      MultiplyQuadraticTetrahedra(QuadraticMesh(mesh_), coefficients, q_);
   EXPECT_LT((product - expected).cwiseAbs().maxCoeff(),
             kReferenceRounding * Scale(q_) *
                 coefficients.cwiseAbs().colwise().sum().maxCoeff());
   for (Eigen::Index i = 0; i < q_.cols(); ++i) {
-    EXPECT_EQ(MultiplyQuadraticTetrahedra(mesh_, coefficients, q_.col(i)),
+    EXPECT_EQ(MultiplyQuadraticTetrahedra(QuadraticMesh(mesh_), coefficients,
+                                          q_.col(i)),
               product.col(i));
   }
 }
@@ -178,7 +179,8 @@ TEST_P(QuadraticByInstructionSet, ProductEqualsTheTextbookForAnyCount) {
       EXPECT_LT((products.h - h * columns).cwiseAbs().maxCoeff(), tolerance);
       EXPECT_LT((products.j - j * columns).cwiseAbs().maxCoeff(), tolerance);
       const Eigen::MatrixXd sum = MultiplyQuadraticTetrahedra(
-          mesh, Eigen::Vector2d(2, -0.5).replicate(1, num_elements), columns);
+          QuadraticMesh(mesh),
+          Eigen::Vector2d(2, -0.5).replicate(1, num_elements), columns);
       EXPECT_LT((sum - (2 * h - 0.5 * j) * columns).cwiseAbs().maxCoeff(),
                 3 * tolerance);
     }

@@ -60,18 +60,20 @@ TEST_P(TensorByInstructionSet, ProductEqualsTheTextbookForAnyCount) {
         one.elements = mesh.elements.col(e);
         expected += TextbookSum(one, coefficients.col(e)) * q;
       }
-      const Eigen::MatrixXd sum = MultiplyTensorElements(mesh, coefficients, q);
+      const Eigen::MatrixXd sum =
+          MultiplyTensorElements(QuadraticMesh(mesh), coefficients, q);
       EXPECT_TRUE(sum.isApprox(expected, 1e-12));
       StiffnessProducts products;
-      MultiplyTensorElements(mesh, q, products);
+      MultiplyTensorElements(QuadraticMesh(mesh), q, products);
       EXPECT_TRUE(
           (2 * products.h + 0.6 * products.j)
               .isApprox(TextbookSum(mesh, Eigen::Vector2d(2, 0.6)) * q, 1e-12));
       for (Eigen::Index i = 0; i < q.cols(); ++i) {
-        EXPECT_EQ(MultiplyTensorElements(mesh, coefficients, q.col(i)),
-                  sum.col(i));
+        EXPECT_EQ(
+            MultiplyTensorElements(QuadraticMesh(mesh), coefficients, q.col(i)),
+            sum.col(i));
         StiffnessProducts of_column;
-        MultiplyTensorElements(mesh, q.col(i), of_column);
+        MultiplyTensorElements(QuadraticMesh(mesh), q.col(i), of_column);
         EXPECT_EQ(of_column.h, products.h.col(i));
         EXPECT_EQ(of_column.j, products.j.col(i));
       }

@@ -60,6 +60,13 @@ void ExpectPermuted(const Mesh& mesh, const OrderedMesh& ordered) {
   EXPECT_EQ(ordered.mesh.nodes, mesh.nodes(Eigen::all, ordered.places));
   EXPECT_EQ(SortedElements(ordered.mesh, &ordered.places),
             SortedElements(mesh));
+  ASSERT_EQ(ordered.element_places.size(), std::size_t(mesh.NumElements()));
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    for (int i = 0; i < 4; ++i) {
+      ASSERT_EQ(ordered.places[ordered.mesh.elements(i, e)],
+                mesh.elements(i, ordered.element_places[e]));
+    }
+  }
 }
 
 TEST(OrderForLocality, PermutesNodesAndElements) {

@@ -90,6 +90,26 @@ TEST_P(SolvedTwice, AgreesInEnergyToTheTolerance) {
   }
 }
 
+TEST_P(SolvedTwice, PreconditionsByASymmetricMatrixNearTheInverse) {
+  const Eigen::VectorXd values = assembly_.Combine(0.3);
+  ASSERT_TRUE(cholesky_.Factorize(values));
+  ASSERT_TRUE(multigrid_->Factorize(values));
+  const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 5, 1);
+  const Eigen::MatrixXd of_cycle = multigrid_->Precondition(b);
+  const Eigen::MatrixXd products = b.transpose() * of_cycle;
+  EXPECT_LE((products - products.transpose()).norm(), 1e-6 * products.norm());
+  // Rough forces meet the eigenvalues of M A, which are near 1.
+  const Eigen::MatrixXd exact = *cholesky_.Solve(b, 0, {});
+  EXPECT_TRUE(cholesky_.Precondition(b).isApprox(exact, 1e-12));
+  for (int k = 0; k < b.cols(); ++k) {
+    const double ratio =
+        b.col(k).dot(of_cycle.col(k)) / b.col(k).dot(exact.col(k));
+    EXPECT_GT(ratio, 0.3);
+    EXPECT_LT(ratio, 1.5);
+  }
+  EXPECT_EQ(multigrid_->Precondition(Eigen::MatrixXd(b.rows(), 0)).cols(), 0);
+}
+
 // The spaces of a matrix serve another one, whatever its scale, and new ones
 // are set up where they no longer do.
 TEST_P(SolvedTwice, KeepsItsSpacesWhileTheyServe) {
