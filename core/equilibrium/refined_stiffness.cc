@@ -5,6 +5,7 @@
 #include "elastimate/core/solvers/conjugate_gradients.h"
 
 namespace elastimate {
+
 RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                    const std::vector<const Supports*>& supports,
                                    SolverKind solver,
@@ -62,12 +63,8 @@ bool RefinedStiffness::FactorizeFinest() {
       stiffness_->Blocks(Finest(), finest_->Graph()));
 }
 
-Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
-                                        const Eigen::MatrixXd& start) {
-  work_.solves += static_cast<int>(all.cols());
-  if (finest_) {
-    return finest_->Solve(all, StiffnessSolver::kAccurate, start);
-  }
+ConjugateGradientResult RefinedStiffness::Iterate(
+    const Eigen::MatrixXd& all, const Eigen::MatrixXd& start) {
   const Eigen::VectorXd& is_free = IsFree();
   ConjugateGradientOptions options;
   options.tolerance = Tolerance();
@@ -80,6 +77,20 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
       start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
       options);
   work_.iterations += result.iterations;
+  return result;
+}
+
+Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
+                                        const Eigen::MatrixXd& start) {
+  work_.solves += static_cast<int>(all.cols());
+  if (finest_) {
+    return finest_->Solve(all, StiffnessSolver::kAccurate, start);
+  }
+  ConjugateGradientResult result = Iterate(all, start);
+  // Coarse spaces may be those of other moduli.
+  if (!result.has_converged && coarsest_.Renew()) {
+    result = Iterate(all, start);
+  }
   if (!result.has_converged) {
     finest_ = make_finest_();
     return FactorizeFinest() ? finest_->Solve(all)

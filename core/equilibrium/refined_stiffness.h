@@ -19,11 +19,12 @@ namespace elastimate {
 /// preconditions: it solves with its factor, or runs one cycle of multigrid.
 ///
 /// The iterations do not grow with the mesh.  On blocks and bars, with a
-/// factor, an error of 1e-8 (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20
-/// to 32 (7) at 0.45 and 45 to 70 (15) at 0.49; with multigrid, a third more.
-/// Flat elements take many more: ten times as many where they are five times as
-/// wide as thick.  Once iterations do not converge, the stiffness is
-/// factorised, then and from then on.
+/// factor, an error of 1e-8 takes 12 to 20 of them at nu = 0.3, 20 to 32 at
+/// 0.45 and 45 to 70 at 0.49.  An error of 1e-2 takes a fourth of these, and
+/// multigrid takes a third more.  Flat elements take many more: ten times as
+/// many where they are five times as wide as thick.  Where iterations do not
+/// converge, the solver of the coarsest space is renewed; where that does not
+/// help, the stiffness of the finest one is factorised, then and from then on.
 class RefinedStiffness : public SupportedStiffness {
  public:
   static constexpr int kMostIterations = 200;
@@ -69,6 +70,8 @@ class RefinedStiffness : public SupportedStiffness {
   const Eigen::VectorXd& IsFreeIn(std::size_t space) const {
     return space == Finest() ? IsFree() : is_free_of_coarser_[space];
   }
+  ConjugateGradientResult Iterate(const Eigen::MatrixXd& all,
+                                  const Eigen::MatrixXd& start);
   bool FactorizeFinest();
   /// Sets up the V-cycle over the finer spaces.  Returns whether K is positive
   /// definite there, as far as it is seen.

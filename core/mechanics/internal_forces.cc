@@ -31,7 +31,7 @@ InternalForces::InternalForces(const Mesh& mesh,
   if (is_isotropic_) {
     stiffness_.emplace(parameters_.NumMaterials() > 1 ? parts_.mesh : mesh);
     if (parameters_.NumMaterials() > 1 && HasQuadraticPass(mesh.kind)) {
-      of_whole_.emplace(mesh);
+      stiffness_of_whole_.emplace(mesh);
     }
   }
 }
@@ -124,7 +124,7 @@ Eigen::Matrix2Xd InternalForces::ModuliOfElements(
 Eigen::MatrixXd InternalForces::Multiply(
     const Eigen::VectorXd& moduli, const Eigen::MatrixXd& displacements) const {
   if (is_isotropic_ && HasQuadraticPass(mesh_.kind)) {
-    return (of_whole_ ? of_whole_ : stiffness_)
+    return (stiffness_of_whole_ ? stiffness_of_whole_ : stiffness_)
         ->MultiplySum(ModuliOfElements(moduli), displacements);
   }
   Eigen::MatrixXd forces =

@@ -32,7 +32,7 @@ class InternalForces {
   /// Preconditions: a valid mesh, valid materials of it.  Refers to `mesh`,
   /// which has to stay as it is; a temporary one does not compile.  Throws
   /// std::invalid_argument for laws of large strains.
-  /// O(num_elements log num_materials).
+  /// O(num_elements log num_materials), and the cost of StiffnessOperator.
   InternalForces(const Mesh& mesh, const std::vector<Material>& materials);
   InternalForces(const Mesh&&, const std::vector<Material>&) = delete;
   InternalForces(const InternalForces&) = delete;
@@ -91,10 +91,11 @@ class InternalForces {
   /// empty, and the whole mesh is the part.
   MeshParts parts_;
   bool is_isotropic_;
-  /// The stiffness of the parts, and of the whole mesh where its elements are
-  /// those of HasQuadraticPass; the latter is empty where it is the former.
+  /// Multiplies on the parts.
   std::optional<StiffnessOperator> stiffness_;
-  std::optional<StiffnessOperator> of_whole_;
+  /// Multiplies on the whole mesh; empty where that is the only part, and
+  /// without HasQuadraticPass.
+  std::optional<StiffnessOperator> stiffness_of_whole_;
 };
 
 }  // namespace elastimate

@@ -1,5 +1,6 @@
 #include "elastimate/core/mechanics/quadratic_mesh.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -8,9 +9,10 @@
 namespace elastimate {
 namespace {
 
-// The records of so many nodes fit into the cache of a core.
-constexpr Eigen::Index kNodesOfSmallestBlock = 8192;
-// With fewer blocks, threads would wait for each other.
+// A thread works on the records of so many nodes in the cache of its core.
+// Blocks of wide bodies are larger, as they reach over some fronts of nodes.
+constexpr Eigen::Index kLeastNodesOfBlock = 8192;
+// A mesh of fewer nodes than this many smallest blocks is not worth dividing.
 constexpr Eigen::Index kFewestBlocks = 4;
 
 }  // namespace
@@ -23,17 +25,22 @@ QuadraticMesh::QuadraticMesh(const Mesh& mesh) : mesh_(mesh) {
 
 QuadraticMesh QuadraticMesh::InBlocks(const Mesh& mesh) {
   QuadraticMesh quadratic(mesh);
-  if (mesh.NumNodes() < kFewestBlocks * kNodesOfSmallestBlock) {
+  if (mesh.NumNodes() < kFewestBlocks * kLeastNodesOfBlock) {
     return quadratic;
   }
   OrderedMesh ordered = OrderForLocality(mesh);
-  quadratic.blocks_ = ChooseElementBlocks(
+  ElementBlocks blocks = ChooseElementBlocks(
       ordered.mesh,
-      kNodesOfSmallestBlock * mesh.NumElements() / mesh.NumNodes());
+      std::max<Eigen::Index>(
+          1, kLeastNodesOfBlock * mesh.NumElements() / mesh.NumNodes()));
+  if (blocks.blocks.size() == 1) {
+    return quadratic;
+  }
+  quadratic.blocks_ = std::move(blocks);
   quadratic.elements_ = std::move(ordered.mesh.elements);
   quadratic.positions_.setZero(mesh.Dimension(), mesh.NumNodes() + 1);
   quadratic.positions_.leftCols(mesh.NumNodes()) = ordered.mesh.nodes;
-  quadratic.nodes_ = std::move(ordered.places);
+  quadratic.node_of_mesh_ = std::move(ordered.places);
   quadratic.element_of_mesh_ = std::move(ordered.element_places);
   return quadratic;
 }

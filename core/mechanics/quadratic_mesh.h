@@ -19,16 +19,18 @@ namespace elastimate {
 /// A mesh of quadratic elements in the order in which a pass visits it.
 class QuadraticMesh {
  public:
-  /// Takes the mesh as it is, as one block.  Refers to `mesh`, which has to
-  /// stay as it is; a temporary one does not compile. Precondition of both:
-  /// HasQuadraticPass(mesh.kind).
+  /// Takes the mesh as it is, as one block.  Both this and InBlocks refer to
+  /// `mesh`, which has to stay as it is; a temporary one does not compile.
+  /// Precondition of both: HasQuadraticPass(mesh.kind).
   explicit QuadraticMesh(const Mesh& mesh);
   explicit QuadraticMesh(const Mesh&&) = delete;
 
-  /// Numbers a large mesh for locality, whose middle nodes usually come behind
-  /// all vertices, so that threads can share its blocks and the nodes of one
-  /// block fit into the cache.  O(num_elements) time, several element passes.
+  /// Orders a large mesh for locality and divides it into blocks, so that
+  /// threads share them and the nodes of a block are near each other in memory:
+  /// in a mesh, the vertices come before all middle nodes.  O(num_elements)
+  /// time, several element passes.
   [[nodiscard]] static QuadraticMesh InBlocks(const Mesh& mesh);
+  static QuadraticMesh InBlocks(const Mesh&&) = delete;
 
   ElementKind Kind() const { return mesh_.kind; }
   int Dimension() const { return mesh_.Dimension(); }
@@ -37,18 +39,19 @@ class QuadraticMesh {
   Eigen::Index NumDofs() const { return mesh_.NumDofs(); }
   Eigen::Index NumElements() const { return mesh_.NumElements(); }
 
-  /// Returns the nodes of an element and those that follow.
+  /// Returns the nodes of an element; those of the next elements follow in
+  /// memory.
   const int* Element(std::ptrdiff_t element) const {
     return Elements().data() + Elements().rows() * element;
   }
   /// Returns the positions of the nodes.  Four values may be read at each
-  /// vertex.
+  /// vertex: a middle node comes behind it, or a spare column.
   const double* Positions() const {
     return IsOrdered() ? positions_.data() : mesh_.nodes.data();
   }
-  /// Returns which node, or element, of the mesh the i-th one is.
-  std::ptrdiff_t Node(std::ptrdiff_t i) const {
-    return IsOrdered() ? nodes_[i] : i;
+  /// Returns the index in the mesh of node, or element, i of this order.
+  std::ptrdiff_t NodeOfMesh(std::ptrdiff_t i) const {
+    return IsOrdered() ? node_of_mesh_[i] : i;
   }
   std::ptrdiff_t ElementOfMesh(std::ptrdiff_t i) const {
     return IsOrdered() ? element_of_mesh_[i] : i;
@@ -56,16 +59,16 @@ class QuadraticMesh {
   const ElementBlocks& Blocks() const { return blocks_; }
 
  private:
-  bool IsOrdered() const { return !nodes_.empty(); }
+  bool IsOrdered() const { return !node_of_mesh_.empty(); }
   const Eigen::MatrixXi& Elements() const {
     return IsOrdered() ? elements_ : mesh_.elements;
   }
 
   const Mesh& mesh_;
-  /// These are empty where the mesh is taken as it is.
+  // These are empty where the mesh is taken as it is.
   Eigen::MatrixXi elements_;
   Eigen::MatrixXd positions_;  ///< With one column more than there are nodes.
-  std::vector<int> nodes_;
+  std::vector<int> node_of_mesh_;
   std::vector<int> element_of_mesh_;
   ElementBlocks blocks_;
 };

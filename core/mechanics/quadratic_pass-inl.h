@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "elastimate/core/mechanics/quadratic_pass.h"
 #include "elastimate/core/mechanics/vector_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,6 +27,7 @@ namespace HWY_NAMESPACE {
 // that of `first_node`.
 template <int kNodes, int kNodesOfElement, class Value>
 struct NodeRecords {
+  static_assert(kLanes <= kMostLanes);
   Value* record[kNodes][kLanes];
 
   HWY_INLINE NodeRecords(const int* elements, std::ptrdiff_t count,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <new>
 #include <vector>
@@ -17,18 +18,18 @@ namespace {
 
 using Records = hwy::AlignedFreeUniquePtr<double[]>;
 
-// The memory in which a thread works.
+// Each thread works in one of these.
 struct Workspace {
   Records records;
-  std::vector<double> of_a;
-  std::vector<double> of_p;
+  std::vector<double> coefficients_of_a;
+  std::vector<double> coefficients_of_p;
 };
 
 std::vector<Workspace> AllocateWorkspaces(const QuadraticMesh& mesh,
                                           Eigen::Index record_size,
                                           Eigen::Index num_coefficients) {
   const ElementBlocks& blocks = mesh.Blocks();
-  // Half of the blocks are worked on at a time.
+  // Blocks of one parity are worked on at a time.
   const Eigen::Index most_threads =
       (Eigen::Index(blocks.blocks.size()) + 1) / 2;
   std::vector<Workspace> workspaces(
@@ -41,8 +42,8 @@ std::vector<Workspace> AllocateWorkspaces(const QuadraticMesh& mesh,
     if (!workspace.records) {
       throw std::bad_alloc();
     }
-    workspace.of_a.resize(num_coefficients);
-    workspace.of_p.resize(num_coefficients);
+    workspace.coefficients_of_a.resize(num_coefficients);
+    workspace.coefficients_of_p.resize(num_coefficients);
   }
   return workspaces;
 }
@@ -62,7 +63,7 @@ void PrefetchLater(const QuadraticMesh& mesh, std::ptrdiff_t node,
                    const NodeRange& nodes, Value* values) {
   constexpr std::ptrdiff_t kNodesAhead = 32;
   if (node + kNodesAhead < nodes.end) {
-    hwy::Prefetch(values + kDimension * mesh.Node(node + kNodesAhead));
+    hwy::Prefetch(values + kDimension * mesh.NodeOfMesh(node + kNodesAhead));
   }
 }
 
@@ -74,7 +75,7 @@ void FillNodeRecords(const QuadraticMesh& mesh, const NodeRange& nodes,
                      const double* values, double* records) {
   for (std::ptrdiff_t i = nodes.first; i < nodes.end; ++i, records += kSize) {
     PrefetchLater<kDimension>(mesh, i, nodes, values);
-    const double* const of_node = values + kDimension * mesh.Node(i);
+    const double* const of_node = values + kDimension * mesh.NodeOfMesh(i);
     double first[kDimension];
     for (int k = 0; k < kDimension; ++k) {
       first[k] = of_node[k];
@@ -93,7 +94,7 @@ template <int kDimension>
 void SetGapsToZero(const QuadraticMesh& mesh, Eigen::MatrixXd& result) {
   for (const NodeRange& gap : mesh.Blocks().gaps) {
     for (std::ptrdiff_t i = gap.first; i < gap.end; ++i) {
-      result.middleRows<kDimension>(kDimension * mesh.Node(i)).setZero();
+      result.middleRows<kDimension>(kDimension * mesh.NodeOfMesh(i)).setZero();
     }
   }
 }
@@ -113,10 +114,12 @@ QuadraticPass PassOver(const ElementBlock& block, const QuadraticMesh& mesh,
   pass.num_elements = block.end - block.first;
   pass.positions = mesh.Positions();
   pass.thickness = mesh.Thickness();
-  pass.coefficients_of_a =
-      workspace.of_a.empty() ? nullptr : workspace.of_a.data();
-  pass.coefficients_of_p =
-      workspace.of_p.empty() ? nullptr : workspace.of_p.data();
+  pass.coefficients_of_a = workspace.coefficients_of_a.empty()
+                               ? nullptr
+                               : workspace.coefficients_of_a.data();
+  pass.coefficients_of_p = workspace.coefficients_of_p.empty()
+                               ? nullptr
+                               : workspace.coefficients_of_p.data();
   pass.first_node = block.nodes.first;
   pass.records = workspace.records.get();
   return pass;
@@ -125,9 +128,30 @@ QuadraticPass PassOver(const ElementBlock& block, const QuadraticMesh& mesh,
 template <int kDimension, std::size_t kNumSums>
 using Sums = std::array<Eigen::Matrix<double, kDimension, 1>, kNumSums>;
 
-// Runs a pass for one column after the other.  Before it, `prepare(block,
-// workspace)` sets the coefficients.  After it, `sums_of(record)` returns the
-// sums of a node, which are entered in the results.
+// Runs a pass over a block for one column, and enters `sums_of(record)` of each
+// node in the columns of the results.
+template <int kDimension, Eigen::Index kSize, std::size_t kNumSums,
+          class SumsOf>
+void RunBlock(const QuadraticMesh& mesh, const ElementBlock& block,
+              const double* displacement, const RunPass& run,
+              const SumsOf& sums_of, bool is_first, Workspace& workspace,
+              const std::array<double*, kNumSums>& results) {
+  FillNodeRecords<kDimension, kSize>(mesh, block.nodes, displacement,
+                                     workspace.records.get());
+  run(PassOver(block, mesh, workspace));
+  const double* record = workspace.records.get();
+  for (std::ptrdiff_t i = block.nodes.first; i < block.nodes.end;
+       ++i, record += kSize) {
+    const Sums<kDimension, kNumSums> sums = sums_of(record);
+    for (std::size_t k = 0; k < kNumSums; ++k) {
+      PrefetchLater<kDimension>(mesh, i, block.nodes, results[k]);
+      EnterSum(sums[k], is_first, results[k] + kDimension * mesh.NodeOfMesh(i));
+    }
+  }
+}
+
+// Runs a pass for one column after the other.  Before each block,
+// `prepare(block, workspace)` sets the coefficients.
 template <int kDimension, Eigen::Index kSize, std::size_t kNumSums,
           class Prepare, class SumsOf>
 void RunInBlocks(const QuadraticMesh& mesh, const Eigen::MatrixXd& displacement,
@@ -141,28 +165,20 @@ void RunInBlocks(const QuadraticMesh& mesh, const Eigen::MatrixXd& displacement,
     SetGapsToZero<kDimension>(mesh, *result);
   }
   for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
+    std::array<double*, kNumSums> columns;
+    for (std::size_t k = 0; k < kNumSums; ++k) {
+      columns[k] = results[k]->col(column).data();
+    }
     for (const std::ptrdiff_t parity : {0, 1}) {
 #pragma omp parallel for num_threads(int(workspaces.size())) \
     schedule(dynamic) if (workspaces.size() > 1)
       for (std::ptrdiff_t b = parity; b < num_blocks; b += 2) {
-        const ElementBlock& block = blocks[b];
         Workspace& workspace =
             workspaces[workspaces.size() > 1 ? omp_get_thread_num() : 0];
-        prepare(block, workspace);
-        FillNodeRecords<kDimension, kSize>(mesh, block.nodes,
-                                           displacement.col(column).data(),
-                                           workspace.records.get());
-        run(PassOver(block, mesh, workspace));
-        const double* record = workspace.records.get();
-        for (std::ptrdiff_t i = block.nodes.first; i < block.nodes.end;
-             ++i, record += kSize) {
-          const Sums<kDimension, kNumSums> sums = sums_of(record);
-          for (std::size_t k = 0; k < kNumSums; ++k) {
-            double* const result = results[k]->col(column).data();
-            PrefetchLater<kDimension>(mesh, i, block.nodes, result);
-            EnterSum(sums[k], parity == 0, result + kDimension * mesh.Node(i));
-          }
-        }
+        prepare(blocks[b], workspace);
+        RunBlock<kDimension, kSize>(mesh, blocks[b],
+                                    displacement.col(column).data(), run,
+                                    sums_of, parity == 0, workspace, columns);
       }
     }
   }
@@ -193,16 +209,21 @@ Eigen::MatrixXd SumOf(const QuadraticMesh& mesh,
   const double share = ShearShareOfJ(mesh.Model());
   std::vector<Workspace> workspaces = AllocateWorkspaces(
       mesh, kSizeForSum, NumElementsOfLargest(mesh.Blocks()) + kMostLanes);
+  assert(coefficients.cols() == mesh.NumElements());
   Eigen::MatrixXd forces;
   RunInBlocks<kDimension, kSizeForSum, 1>(
       mesh, displacement, run, workspaces,
       [&](const ElementBlock& block, Workspace& workspace) {
         for (std::ptrdiff_t e = block.first; e < block.end; ++e) {
           const auto of_element = coefficients.col(mesh.ElementOfMesh(e));
-          workspace.of_a[e - block.first] =
+          workspace.coefficients_of_a[e - block.first] =
               of_element(0) - share * of_element(1);
-          workspace.of_p[e - block.first] = of_element(1);
+          workspace.coefficients_of_p[e - block.first] = of_element(1);
         }
+        // Lanes behind the last element multiply these by a mass of zero.
+        const auto end = std::size_t(block.end - block.first);
+        std::fill_n(&workspace.coefficients_of_a[end], kMostLanes, 0.0);
+        std::fill_n(&workspace.coefficients_of_p[end], kMostLanes, 0.0);
       },
       [](const double* record) -> Sums<kDimension, 1> {
         return {Eigen::Map<const Eigen::Matrix<double, kDimension, 1>>(record +

@@ -19,9 +19,8 @@ inline constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
 inline constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
 
 /// One pass over a block of quadratic elements with straight edges, for one
-/// column.
-/// Several columns in one pass would share the geometry of an element, but
-/// their records would not fit into the cache together, which costs more.
+/// column.  Several columns in one pass would share the geometry of an element,
+/// but their records would not fit into the cache together, which costs more.
 struct QuadraticPass {
   const int* elements;  ///< num_nodes of the kind x num_elements.
   std::ptrdiff_t num_elements;
@@ -34,7 +33,7 @@ struct QuadraticPass {
   /// arrays then are longer than the number of elements, by kMostLanes.
   const double* coefficients_of_a;
   const double* coefficients_of_p;
-  /// The first record is that of this node.
+  /// This is the node whose record comes first.
   std::ptrdiff_t first_node;
   double* records;
 };
@@ -53,7 +52,8 @@ void MultiplyByPass(const QuadraticMesh& mesh,
                     StiffnessProducts& products);
 
 /// Returns the sum over the elements of c_0 H_e q + c_1 J_e q, with the
-/// coefficients c of each element (2 x num_elements), by threads likewise.
+/// coefficients c of each element (2 x num_elements).  Threads share the blocks
+/// as above.
 Eigen::MatrixXd MultiplyByPass(const QuadraticMesh& mesh,
                                const Eigen::Matrix2Xd& coefficients,
                                const Eigen::MatrixXd& displacement,

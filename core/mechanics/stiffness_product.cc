@@ -23,6 +23,14 @@ void MultiplyQuadratic(const QuadraticMesh& mesh,
   }
 }
 
+Eigen::MatrixXd MultiplyQuadratic(const QuadraticMesh& mesh,
+                                  const Eigen::Matrix2Xd& coefficients,
+                                  const Eigen::MatrixXd& displacement) {
+  return mesh.Kind() == ElementKind::kTet10
+             ? MultiplyQuadraticTetrahedra(mesh, coefficients, displacement)
+             : MultiplyTensorElements(mesh, coefficients, displacement);
+}
+
 // Multiplies for all kinds but linear tetrahedra and those of HasQuadraticPass.
 void MultiplyOtherKinds(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                         StiffnessProducts& products) {
@@ -82,10 +90,8 @@ void StiffnessOperator::Multiply(const Eigen::MatrixXd& displacement,
 Eigen::MatrixXd StiffnessOperator::MultiplySum(
     const Eigen::Matrix2Xd& coefficients,
     const Eigen::MatrixXd& displacement) const {
-  return mesh_.kind == ElementKind::kTet10
-             ? MultiplyQuadraticTetrahedra(*quadratic_, coefficients,
-                                           displacement)
-             : MultiplyTensorElements(*quadratic_, coefficients, displacement);
+  assert(HasQuadraticPass(mesh_.kind));
+  return MultiplyQuadratic(*quadratic_, coefficients, displacement);
 }
 
 }  // namespace elastimate

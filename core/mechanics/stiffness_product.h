@@ -39,8 +39,9 @@ struct StiffnessProducts {
     const Mesh& mesh, const Eigen::MatrixXd& displacement);
 
 /// The stiffness bases H and J of a mesh, to be multiplied many times.  This
-/// does what MultiplyStiffnessBasis does, but with threads, and it first
-/// numbers the mesh for locality if its own numbering has none.
+/// does what MultiplyStiffnessBasis does, but with threads.  It first numbers
+/// linear tetrahedra for locality if their own numbering has none, and orders
+/// quadratic elements (QuadraticMesh::InBlocks).
 ///
 ///   const StiffnessOperator stiffness(mesh, 2);
 ///   StiffnessProducts products;
@@ -59,12 +60,13 @@ class StiffnessOperator {
   /// pass over quadratic elements of HasQuadraticPass takes longer, and has
   /// OpenMP's own number of threads.
   ///
-  /// Cost: O(num_elements) time; a tenth of an element pass if the numbering is
-  /// good, and else several passes (OrderForLocality).
+  /// Cost: O(num_elements) time; a tenth of an element pass for linear
+  /// tetrahedra with a good numbering, and else several passes
+  /// (OrderForLocality).
   explicit StiffnessOperator(const Mesh& mesh, int num_threads = 1);
   explicit StiffnessOperator(const Mesh&&, int = 1) = delete;
 
-  /// Tells whether the mesh was numbered again.
+  /// Tells whether linear tetrahedra were numbered again.
   bool IsReordered() const { return !places_.empty(); }
 
   /// Does what MultiplyStiffnessBasis does; matrices of the right shape in
@@ -90,7 +92,7 @@ class StiffnessOperator {
   std::vector<int> places_;
   /// The blocks of the mesh that is worked on, if its tetrahedra are linear.
   ElementBlocks blocks_;
-  /// Where its elements are those of HasQuadraticPass.
+  /// It has a value where HasQuadraticPass.
   std::optional<QuadraticMesh> quadratic_;
 };
 

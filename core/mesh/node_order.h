@@ -16,9 +16,11 @@ namespace elastimate {
 bool HasLocality(const Mesh& mesh);
 
 struct OrderedMesh {
-  Mesh mesh;                ///< Without regions.
+  /// It has no regions, and middle nodes among its vertices.
+  Mesh mesh;
   std::vector<int> places;  ///< Its node i is node places[i] of the other mesh.
-  std::vector<int> element_places;  ///< Likewise for elements.
+  /// Its element i is element element_places[i] of the other mesh.
+  std::vector<int> element_places;
 };
 
 /// Returns the mesh with its nodes in the order in which a breadth-first search

@@ -131,15 +131,8 @@ Spread AsVectors(const Mesh& mesh, const Cells& cells,
 
 Spread AsPressure(const Mesh& mesh, const Cells& cells,
                   const Eigen::MatrixXd& force) {
-  Eigen::MatrixXd normals(force.rows(), cells.nodes.cols());
-  for (Eigen::Index i = 0; i < normals.cols(); ++i) {
-    normals.col(i) = WeightsOfFacet(mesh, cells.nodes.col(i))
-                         .area_vector.rowwise()
-                         .sum()
-                         .normalized();
-  }
   Spread spread = NothingOf(cells, force);
-  TakeAlong(mesh, cells, normals, spread);
+  TakeAlong(mesh, cells, UnitNormals(mesh, cells.nodes), spread);
   return spread;
 }
 

@@ -19,8 +19,8 @@ namespace elastimate {
 /// of iterations grows as nu nears 1/2, and with bad elements.
 ///
 /// Coarse spaces are kept for the next matrices, scaled by the ratio of the
-/// traces, until solves become slow, because finding new ones takes as long as
-/// about a hundred iterations.
+/// traces, until solves become slow or a caller of Cycle asks for new ones,
+/// because finding these takes as long as about a hundred iterations.
 ///
 /// OpenMP spreads the products of an iteration over the cores there are, except
 /// within an outer parallel region.  Where several ranks have the rows, all of
@@ -33,7 +33,7 @@ class AlgebraicMultigrid {
   /// `rows` must outlive this object.
   AlgebraicMultigrid(MultigridRows& rows, FindSpaces find_spaces);
 
-  /// Prepares the matrix that the rows now have for Solve.
+  /// Prepares the matrix that the rows now have for Solve and Cycle.
   bool Factorize();
   /// Does what LinearSolver::Solve does, for all rows of the blocks.  Held rows
   /// of `right_hand_sides` and `start` are zero.
@@ -42,6 +42,8 @@ class AlgebraicMultigrid {
                                        const Eigen::MatrixXd& start);
   /// Runs the V-cycle that preconditions Solve.
   Eigen::MatrixXd Cycle(const Eigen::MatrixXd& force) const;
+  /// Does what LinearSolver::Renew does.
+  bool Renew() { return !are_spaces_of_matrix_ && SetUp(); }
   int NumIterations() const { return num_iterations_; }
   int NumSetUps() const { return num_set_ups_; }
 

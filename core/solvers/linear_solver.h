@@ -18,10 +18,10 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
 
   /// Prepares the matrix of these values (in the order of the pattern) for
-  /// Solve, which may read them again: they must stay as they are until the
-  /// next Factorize.  Returns false when that fails: the matrix may be singular
-  /// to working precision.  Throws std::bad_alloc when there is not enough
-  /// memory.
+  /// Solve and Precondition, which may read them again: they must stay as they
+  /// are until the next Factorize.  Returns false when that fails: the matrix
+  /// may be singular to working precision.  Throws std::bad_alloc when there is
+  /// not enough memory.
   virtual bool Factorize(const Eigen::VectorXd& values) = 0;
 
   /// Returns the solution x for each column of `right_hand_sides`, size x n.
@@ -34,10 +34,14 @@ class LinearSolver {
       const Eigen::MatrixXd& right_hand_sides, double tolerance,
       const Eigen::MatrixXd& start) = 0;
 
-  /// Returns M x for each column, where M is symmetric positive definite and
-  /// the condition number of M A is small: A^-1 of a direct solver, and one
-  /// cycle of multigrid.  Precondition: as for Solve.
+  /// Returns M x for each column x.  M is symmetric positive definite and close
+  /// to A^-1: it is A^-1 in a direct solver, and one cycle in multigrid.
+  /// Precondition: as for Solve.
   virtual Eigen::MatrixXd Precondition(const Eigen::MatrixXd& columns) = 0;
+  /// Has Precondition serve the present matrix as well as it can, where
+  /// Factorize has kept coarse spaces of another one.  Returns whether that
+  /// changed anything.  Precondition: as for Solve.
+  virtual bool Renew() { return false; }
 
   /// Returns the iterations of all columns until now; 0 for a direct solver.
   virtual int NumIterations() const { return 0; }

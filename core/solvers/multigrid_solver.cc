@@ -105,6 +105,7 @@ class MultigridOfOneRank : public LinearSolver {
     return *free_rows_.FromBlocks(
         multigrid_.Cycle(free_rows_.InBlocks(columns)));
   }
+  bool Renew() override { return multigrid_.Renew(); }
   int NumIterations() const override { return multigrid_.NumIterations(); }
   int NumSetUps() const override { return multigrid_.NumSetUps(); }
 
@@ -120,6 +121,7 @@ enum class Task : std::int64_t {
   kFactorize,
   kSolve,
   kPrecondition,
+  kRenew,
   kForget,
   kEnd
 };
@@ -311,6 +313,11 @@ class MultigridOfRanks : public LinearSolver {
     return *free_rows_.FromBlocks(WithOthers(
         own_->multigrid.Cycle(SendOthers(free_rows_.InBlocks(columns)))));
   }
+  bool Renew() override {
+    const Step step(ranks_);
+    Tell(ranks_, {Task::kRenew, number_});
+    return own_->multigrid.Renew();
+  }
   int NumIterations() const override { return own_->multigrid.NumIterations(); }
   int NumSetUps() const override { return own_->multigrid.NumSetUps(); }
 
@@ -436,6 +443,8 @@ void ServeSolves(const AlgebraicMultigrid::FindSpaces& find_spaces,
       ServeSolve(ranks, order, *systems.at(order.system));
     } else if (order.task == Task::kPrecondition) {
       ServePrecondition(ranks, order, *systems.at(order.system));
+    } else if (order.task == Task::kRenew) {
+      static_cast<void>(systems.at(order.system)->multigrid.Renew());
     } else {
       systems.erase(order.system);
     }

@@ -205,4 +205,15 @@ Eigen::MatrixXd StiffnessSolver::Precondition(const Eigen::MatrixXd& all) {
   return dofs.Extend(shared_->solver->Precondition(dofs.Restrict(all)));
 }
 
+bool StiffnessSolver::Renew() {
+  if (!FactorizeAgain()) {
+    return false;
+  }
+  LinearSolver& solver = *shared_->solver;
+  const int set_ups_before = solver.NumSetUps();
+  const bool is_renewed = solver.Renew();
+  work_.multigrid_set_ups += solver.NumSetUps() - set_ups_before;
+  return is_renewed;
+}
+
 }  // namespace elastimate

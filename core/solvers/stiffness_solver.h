@@ -110,9 +110,12 @@ class StiffnessSolver {
                         const Eigen::MatrixXd& start = {});
 
   /// Returns LinearSolver::Precondition of the free rows of each column
-  /// (num_dofs x n), and zeros in the held rows; NaN where the last matrix is
-  /// factorised again and is singular.  Precondition: as for Solve.
+  /// (num_dofs x n), and zeros in the held rows; NaN where the last matrix has
+  /// to be factorised again and is singular.  This counts no solve, and never
+  /// takes another solver.  Precondition: as for Solve.
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all);
+  /// Does what LinearSolver::Renew does.
+  bool Renew();
 
   /// Returns nu of the present factorisation; NaN when there is none, or when
   /// it is of blocks.

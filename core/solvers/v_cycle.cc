@@ -19,10 +19,12 @@ constexpr int kSteps = 6;
 template <int kDimension>
 void InvertFree(const Eigen::MatrixXd& blocks, const Eigen::VectorXd& is_free,
                 Eigen::MatrixXf& inverses) {
+  const double unit = blocks.size() > 0 ? blocks.cwiseAbs().maxCoeff() : 1;
   using Block = Eigen::Matrix<double, kDimension, kDimension>;
   for (Eigen::Index i = 0; i < blocks.cols(); i += kDimension) {
     const auto free = is_free.segment<kDimension>(i);
-    Block block = free.asDiagonal() * Block(blocks.middleCols<kDimension>(i)) *
+    Block block = free.asDiagonal() *
+                  Block(blocks.middleCols<kDimension>(i) / unit) *
                   free.asDiagonal();
     block.diagonal() += Eigen::Matrix<double, kDimension, 1>::Ones() - free;
     inverses.middleCols<kDimension>(i) =

@@ -20,11 +20,11 @@ struct CycleSpace {
 };
 
 /// Runs a V(1,1)-cycle for K x = force from x = 0, from the last of `spaces`
-/// down; below the first of them, `solve_coarsest` solves.  On each space, two
-/// steps of Chebyshev's iteration with the diagonal blocks [Adams, Brezina, Hu
-/// & Tuminaro, J. Comput. Phys. 188 (2003) 593] come before and after the
-/// correction by the coarser spaces.  As a map of forces it is symmetric, and
-/// positive definite where K is.
+/// down; below the first of them, `solve_coarsest` solves or preconditions.  On
+/// each space, two steps of Chebyshev's iteration with the diagonal blocks
+/// [Adams, Brezina, Hu & Tuminaro, J. Comput. Phys. 188 (2003) 593] come before
+/// and after the correction by the coarser spaces.  As a map of forces it is
+/// symmetric, and positive definite where K is.
 [[nodiscard]] Eigen::MatrixXd VCycle(const std::vector<CycleSpace>& spaces,
                                      const ColumnOperator& solve_coarsest,
                                      const Eigen::MatrixXd& force);
@@ -32,8 +32,10 @@ struct CycleSpace {
 /// Inverts each of some blocks, which stand side by side, on its free
 /// components, and leaves zeros in the rows and columns of the held ones.
 /// `is_free` is 1 or 0 for each degree of freedom.  The inverses stand side by
-/// side as the blocks do, in single precision, which is enough for a smoother.
-/// Precondition: blocks of 1, 2 or 3 rows.
+/// side as the blocks do.  Single precision is enough for a smoother, and the
+/// largest magnitude in `blocks`, by which all inverses are multiplied, has
+/// them fit into it in any unit: LargestEigenvalue has the same factor, with
+/// which it cancels.  Precondition: blocks of 1, 2 or 3 rows.
 [[nodiscard]] Eigen::MatrixXf InverseBlocks(const Eigen::MatrixXd& blocks,
                                             const Eigen::VectorXd& is_free);
 

@@ -29,7 +29,7 @@ using FitFunction =
 /// are those of the fit without them; only those that lie apart
 /// (OutliersApart) are left out in the end, and none where they are more than
 /// a third of all points, since something else is wrong then.
-InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit,
+InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_without,
                            const MaterialFit& of_all);
 
 /// Enters which measurements were left out, and what that changed.

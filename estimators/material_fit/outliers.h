@@ -47,9 +47,9 @@ std::vector<Outlier> OutliersApart(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const std::vector<Outlier>& outliers);
 
-/// Takes what was measured at these points out of a scene, or returns the scene
-/// without it.
+/// Takes what was measured at these points out of a scene.
 void LeaveOut(const std::vector<Outlier>& outliers, Scene& scene);
+/// Returns the scene without what was measured at these points.
 Scene WithoutOutliers(const Scene& scene, const std::vector<Outlier>& outliers);
 
 }  // namespace elastimate

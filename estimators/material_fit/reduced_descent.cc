@@ -255,8 +255,8 @@ bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
     element_passes_ += 1 + iterations.value_or(kMostIterationsByFactor);
     return iterations.has_value();
   }
-  // A pass over quadratic elements takes as long for each column, and the
-  // vectors of one column of each load case need less memory.
+  // The vectors of one column of each load case need less memory, and a pass
+  // over isotropic quadratic elements takes as long for each column.
   const Eigen::Index n = x.cols() / misfit_.Observed().NumLoadCases();
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto of_cases = Eigen::seq(i, Eigen::last, n);

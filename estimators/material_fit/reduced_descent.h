@@ -43,7 +43,9 @@ namespace elastimate {
 ///
 /// Precondition: no unknown motions.  Cost: 1 to 3 factorisations and, for each
 /// load case and pole, a solve for each variable; and about five times as many
-/// element passes.  Memory: some 6 vectors for each load case and variable.
+/// element passes; over coarser spaces instead of a factor, about fifty for
+/// each of these solves.  Memory: some 6 vectors for each load case and
+/// variable.
 std::optional<BoundedMinimum> ReducedMinimum(
     const std::optional<Eigen::VectorXd>& start,
     const EstimatorOptions& options, DisplacementMisfit& misfit,

@@ -132,7 +132,8 @@ class Refinement {
     has_rival_axis_ = has_rival_axis_ || space->Fit().has_rival_axis;
     return space;
   }
-  /// Fits a scene in the same space without some outliers.
+  /// Fits again in the same space, to the measurement of a scene less some
+  /// outliers.
   void Refit(const Scene& scene, const std::vector<Outlier>& left_out,
              const std::optional<Eigen::VectorXd>& start,
              const std::vector<const Scene*>& coarser,
@@ -361,7 +362,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
   Chain chain = FitQuadratic(quadratic, last);
   if (!quadratic.supports.in_doubt.empty() && chain.Finest().Fit().minimum) {
     HoldNodesInDoubt(quadratic.supports);
-    Chain held = FitQuadratic(quadratic, chain.Finest().Fit().Variables());
+    Chain held = FitQuadratic(quadratic, last);
     if (held.Finest().Fit().minimum) {
       chain = MeanOf(std::move(held), std::move(chain));
     }

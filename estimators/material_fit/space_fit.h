@@ -85,9 +85,8 @@ class SpaceFit {
   /// minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
-  /// Takes what a scene that differs in its measured displacements alone has
-  /// measured: at the same nodes, or at others, without some outliers.
-  /// Minimize starts anew then.
+  /// Takes the measurement of another scene of the same specimen, at the same
+  /// nodes or at others, less some outliers.  Minimize starts anew then.
   /// Preconditions: no unknown motions; other rows, if there are outliers.
   enum class Rows { kSame, kOther };
   void Measure(const Scene& scene, Rows rows,

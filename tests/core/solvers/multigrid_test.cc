@@ -110,6 +110,18 @@ TEST_P(SolvedTwice, PreconditionsByASymmetricMatrixNearTheInverse) {
   EXPECT_EQ(multigrid_->Precondition(Eigen::MatrixXd(b.rows(), 0)).cols(), 0);
 }
 
+TEST_P(SolvedTwice, RenewsSpacesOfAnotherMatrixOnce) {
+  ASSERT_TRUE(multigrid_->Factorize(assembly_.Combine(0.3)));
+  EXPECT_FALSE(multigrid_->Renew());
+  const Eigen::VectorXd values = assembly_.Combine(0.4999);
+  ASSERT_TRUE(multigrid_->Factorize(values));
+  EXPECT_EQ(multigrid_->NumSetUps(), 1);
+  EXPECT_TRUE(multigrid_->Renew());
+  EXPECT_EQ(multigrid_->NumSetUps(), 2);
+  EXPECT_FALSE(multigrid_->Renew());
+  EXPECT_FALSE(cholesky_.Factorize(values) && cholesky_.Renew());
+}
+
 // The spaces of a matrix serve another one, whatever its scale, and new ones
 // are set up where they no longer do.
 TEST_P(SolvedTwice, KeepsItsSpacesWhileTheyServe) {

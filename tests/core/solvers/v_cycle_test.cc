@@ -122,8 +122,13 @@ TEST(InverseBlocks, AreZeroWhereComponentsAreHeld) {
   expected.leftCols<2>() << 2, -1, -1, 2;
   expected.leftCols<2>() /= 3;
   expected(1, 3) = 0.25;
+  expected *= 4;
   EXPECT_TRUE(InverseBlocks(blocks, Eigen::Vector4d(1, 1, 0, 1))
                   .isApprox(expected.cast<float>(), 1e-6F));
+  for (const double unit : {1e-60, 1e60}) {
+    EXPECT_TRUE(InverseBlocks(unit * blocks, Eigen::Vector4d(1, 1, 0, 1))
+                    .isApprox(expected.cast<float>(), 1e-6F));
+  }
 }
 
 }  // namespace
