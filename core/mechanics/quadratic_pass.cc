@@ -57,7 +57,7 @@ Eigen::Index NumElementsOfLargest(const ElementBlocks& blocks) {
 }
 
 // Asks for the values of a later node.  Nodes of a mesh that was numbered again
-// are scattered over a column, and without this a pass takes a third longer.
+// are scattered over a column, and without this a pass takes a sixth longer.
 template <int kDimension, class Value>
 void PrefetchLater(const QuadraticMesh& mesh, std::ptrdiff_t node,
                    const NodeRange& nodes, Value* values) {
