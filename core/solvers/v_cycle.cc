@@ -18,24 +18,21 @@ constexpr int kSteps = 6;
 
 template <int kDimension>
 void InvertFree(const Eigen::MatrixXd& blocks, const Eigen::VectorXd& is_free,
-                Eigen::MatrixXf& inverses) {
-  const double unit = blocks.size() > 0 ? blocks.cwiseAbs().maxCoeff() : 1;
+                Eigen::MatrixXd& inverses) {
   using Block = Eigen::Matrix<double, kDimension, kDimension>;
   for (Eigen::Index i = 0; i < blocks.cols(); i += kDimension) {
     const auto free = is_free.segment<kDimension>(i);
-    Block block = free.asDiagonal() *
-                  Block(blocks.middleCols<kDimension>(i) / unit) *
+    Block block = free.asDiagonal() * Block(blocks.middleCols<kDimension>(i)) *
                   free.asDiagonal();
     block.diagonal() += Eigen::Matrix<double, kDimension, 1>::Ones() - free;
     inverses.middleCols<kDimension>(i) =
-        (free.asDiagonal() * Block(block.inverse()) * free.asDiagonal())
-            .template cast<float>();
+        free.asDiagonal() * Block(block.inverse()) * free.asDiagonal();
   }
 }
 
 // Sets x to keep x + B v for such blocks B, in one pass over memory.
 template <int kDimension, class Columns>
-void AddEach(const Eigen::MatrixXf& blocks, const Columns& v, double keep,
+void AddEach(const Eigen::MatrixXd& blocks, const Columns& v, double keep,
              Eigen::MatrixXd& x) {
   // A thread takes about as long to start as so many rows.
   constexpr Eigen::Index kFewRows = 20000;
@@ -45,21 +42,16 @@ void AddEach(const Eigen::MatrixXf& blocks, const Columns& v, double keep,
     for (Eigen::Index i = 0; i < num_rows; i += kDimension) {
       const Eigen::Matrix<double, kDimension, 1> of_node =
           v.col(k).template segment<kDimension>(i);
-      const float* const block = blocks.data() + kDimension * i;
-      double* const sum = x.col(k).data() + i;
-      for (int r = 0; r < kDimension; ++r) {
-        double product = 0;
-        for (int c = 0; c < kDimension; ++c) {
-          product += double{block[kDimension * c + r]} * of_node(c);
-        }
-        sum[r] = keep * sum[r] + product;
-      }
+      auto sum = x.col(k).segment<kDimension>(i);
+      sum = keep * sum + (blocks.middleCols<kDimension>(i)
+                              .template topRows<kDimension>()
+                              .lazyProduct(of_node));
     }
   }
 }
 
 template <class Columns>
-void AddBlocksTimes(const Eigen::MatrixXf& blocks, const Columns& v,
+void AddBlocksTimes(const Eigen::MatrixXd& blocks, const Columns& v,
                     double keep, Eigen::MatrixXd& x) {
   if (blocks.rows() == 3) {
     AddEach<3>(blocks, v, keep, x);
@@ -71,7 +63,7 @@ void AddBlocksTimes(const Eigen::MatrixXf& blocks, const Columns& v,
 }
 
 template <class Columns>
-Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXf& blocks,
+Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
                                const Columns& v) {
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(v.rows(), v.cols());
   AddBlocksTimes(blocks, v, 1, products);
@@ -124,9 +116,9 @@ Eigen::MatrixXd VCycle(const std::vector<CycleSpace>& spaces,
   return CycleFrom(spaces, spaces.size(), solve_coarsest, force);
 }
 
-Eigen::MatrixXf InverseBlocks(const Eigen::MatrixXd& blocks,
+Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
                               const Eigen::VectorXd& is_free) {
-  Eigen::MatrixXf inverses(blocks.rows(), blocks.cols());
+  Eigen::MatrixXd inverses(blocks.rows(), blocks.cols());
   if (blocks.rows() == 3) {
     InvertFree<3>(blocks, is_free, inverses);
   } else if (blocks.rows() == 2) {
@@ -139,7 +131,7 @@ Eigen::MatrixXf InverseBlocks(const Eigen::MatrixXd& blocks,
 }
 
 double LargestEigenvalue(const ColumnOperator& multiply,
-                         const Eigen::MatrixXf& inverse_blocks,
+                         const Eigen::MatrixXd& inverse_blocks,
                          int& num_products, const Ranks* ranks) {
   ConjugateGradientOptions options;
   options.ranks = ranks;

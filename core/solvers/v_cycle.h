@@ -13,7 +13,7 @@ namespace elastimate {
 struct CycleSpace {
   ColumnOperator multiply;  ///< K x.
   /// The inverses of the diagonal blocks of K, as InverseBlocks returns them.
-  Eigen::MatrixXf inverse_blocks;
+  Eigen::MatrixXd inverse_blocks;
   double largest_eigenvalue = 0;  ///< LargestEigenvalue, for these blocks.
   ColumnOperator restrict;        ///< From this space to the next coarser one.
   ColumnOperator interpolate;     ///< Its transpose.
@@ -32,11 +32,8 @@ struct CycleSpace {
 /// Inverts each of some blocks, which stand side by side, on its free
 /// components, and leaves zeros in the rows and columns of the held ones.
 /// `is_free` is 1 or 0 for each degree of freedom.  The inverses stand side by
-/// side as the blocks do.  Single precision is enough for a smoother, and the
-/// largest magnitude in `blocks`, by which all inverses are multiplied, has
-/// them fit into it in any unit: LargestEigenvalue has the same factor, with
-/// which it cancels.  Precondition: blocks of 1, 2 or 3 rows.
-[[nodiscard]] Eigen::MatrixXf InverseBlocks(const Eigen::MatrixXd& blocks,
+/// side as the blocks do.  Precondition: blocks of 1, 2 or 3 rows.
+[[nodiscard]] Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
                                             const Eigen::VectorXd& is_free);
 
 /// Estimates the largest eigenvalue of D^-1 K for the diagonal blocks D; the
@@ -44,7 +41,7 @@ struct CycleSpace {
 /// be positive definite.  Takes 6 products; their number is added to
 /// `num_products`.  Where several ranks have the rows, all of them call it.
 [[nodiscard]] double LargestEigenvalue(const ColumnOperator& multiply,
-                                       const Eigen::MatrixXf& inverse_blocks,
+                                       const Eigen::MatrixXd& inverse_blocks,
                                        int& num_products,
                                        const Ranks* ranks = nullptr);
 

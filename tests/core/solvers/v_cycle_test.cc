@@ -102,7 +102,7 @@ TEST(LargestEigenvalue, IsAtMostATenthTooSmall) {
       [&](const Eigen::MatrixXd& x) {
         return Eigen::MatrixXd(values.asDiagonal() * x);
       },
-      Eigen::MatrixXf::Ones(1, 200), products);
+      Eigen::MatrixXd::Ones(1, 200), products);
   EXPECT_GE(largest, 0.9 * 3);
   EXPECT_LE(largest, 3 + 1e-12);
   EXPECT_EQ(products, 1 + 6);
@@ -112,7 +112,7 @@ TEST(LargestEigenvalue, IsNotANumberForANegativeMatrix) {
   int products = 0;
   EXPECT_TRUE(std::isnan(LargestEigenvalue(
       [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(-x); },
-      Eigen::MatrixXf::Ones(1, 5), products)));
+      Eigen::MatrixXd::Ones(1, 5), products)));
 }
 
 TEST(InverseBlocks, AreZeroWhereComponentsAreHeld) {
@@ -122,13 +122,8 @@ TEST(InverseBlocks, AreZeroWhereComponentsAreHeld) {
   expected.leftCols<2>() << 2, -1, -1, 2;
   expected.leftCols<2>() /= 3;
   expected(1, 3) = 0.25;
-  expected *= 4;
   EXPECT_TRUE(InverseBlocks(blocks, Eigen::Vector4d(1, 1, 0, 1))
-                  .isApprox(expected.cast<float>(), 1e-6F));
-  for (const double unit : {1e-60, 1e60}) {
-    EXPECT_TRUE(InverseBlocks(unit * blocks, Eigen::Vector4d(1, 1, 0, 1))
-                    .isApprox(expected.cast<float>(), 1e-6F));
-  }
+                  .isApprox(expected, 1e-14));
 }
 
 }  // namespace
