@@ -29,7 +29,7 @@ class AssembledStiffness : public SupportedStiffness {
 
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                        const Eigen::MatrixXd& start) override {
+                        Eigen::MatrixXd start) override {
     return Solver().Solve(all, Tolerance(), start);
   }
 

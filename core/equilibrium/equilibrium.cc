@@ -32,7 +32,6 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
     : values_(std::make_unique<NestedStiffness>(UsedSpaces(spaces))),
       mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
-      held_displacement_(load_.rows(), load_.cols()),
       has_unknown_motion_(HasUnknownMotion(*spaces.back())),
       tolerance_(IsRefined() ? tolerance : StiffnessSolver::kAccurate) {
   const Scene& scene = *spaces.back();
@@ -50,11 +49,20 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
   }
   SetTolerance(tolerance_);
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
-    held_displacement_.col(k) =
+    const Eigen::VectorXd held =
         elastimate::HeldDisplacement(SupportsOf(scene, k));
+    if (held_displacement_.size() == 0 && !held.isZero(0)) {
+      held_displacement_.setZero(load_.rows(), load_.cols());
+    }
+    if (held_displacement_.size() > 0) {
+      held_displacement_.col(k) = held;
+    }
+  }
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     Eigen::Index first = 0;
     while (stiffness_of_case_[first] != stiffness_of_case_[k] ||
-           held_displacement_.col(first) != held_displacement_.col(k)) {
+           (held_displacement_.size() > 0 &&
+            held_displacement_.col(first) != held_displacement_.col(k))) {
       ++first;
     }
     first_held_alike_.push_back(first);
@@ -149,7 +157,14 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
     }
   }
   values_->ForgetDiagonalBlocks();
-  const Eigen::MatrixXd start = displacement_ - support_response_;
+  if (held_displacement_.size() == 0) {
+    displacement_ = SolveFrom(displacement_, load_);
+    return !displacement_.hasNaN();
+  }
+  const Eigen::MatrixXd start =
+      displacement_.size() > 0
+          ? Eigen::MatrixXd(displacement_ - support_response_)
+          : Eigen::MatrixXd();
   SolveForSupports(scaled);
   displacement_ = SolveFrom(start, load_) + support_response_;
   return !displacement_.hasNaN();
@@ -181,20 +196,27 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
     return sensitivities_;
   }
   const Eigen::Index n = directions.cols();
-  Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
-  const bool has_start = sensitivities_.cols() == sensitivities.cols();
+  const bool has_start = sensitivities_.cols() == n * displacement_.cols();
+  if (!has_start) {
+    sensitivities_.resize(displacement_.rows(), n * displacement_.cols());
+  }
   directions_.resize(0, 0);
+  // Iterations over finer spaces take as long for each column alone, and need
+  // less memory.
+  const Eigen::Index at_a_time = IsRefined() ? 1 : n;
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    sensitivities.middleCols(n * k, n) =
-        -stiffness_[stiffness_of_case_[k]]->Solve(
-            Forces().Columns(displacement_.col(k)) * (directions / scale_),
-            has_start ? Eigen::MatrixXd(sensitivities_.middleCols(n * k, n))
-                      : Eigen::MatrixXd());
+    const Eigen::MatrixXd forces =
+        Forces().Columns(displacement_.col(k)) * (directions / scale_);
+    for (Eigen::Index i = 0; i < n; i += at_a_time) {
+      auto columns = sensitivities_.middleCols(n * k + i, at_a_time);
+      columns = -stiffness_[stiffness_of_case_[k]]->Solve(
+          forces.middleCols(i, at_a_time),
+          has_start ? Eigen::MatrixXd(columns) : Eigen::MatrixXd());
+    }
   }
-  sensitivities_ = sensitivities;
   directions_ = directions;
-  return sensitivities;
+  return sensitivities_;
 }
 
 Eigen::MatrixXd Equilibrium::SolveFor(const Eigen::MatrixXd& forces) {
@@ -205,21 +227,23 @@ Eigen::MatrixXd Equilibrium::Precondition(const Eigen::MatrixXd& forces) {
   return ByStiffness(
       forces, [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns,
                   const auto& /*own*/) {
-        return Eigen::MatrixXd(stiffness.Precondition(columns) / scale_);
+        Eigen::MatrixXd x = stiffness.Precondition(columns);
+        x /= scale_;
+        return x;
       });
 }
 
 Eigen::MatrixXd Equilibrium::SolveFrom(const Eigen::MatrixXd& start,
                                        const Eigen::MatrixXd& forces) {
-  return ByStiffness(forces, [&](SupportedStiffness& stiffness,
-                                 const Eigen::MatrixXd& columns,
-                                 const std::vector<Eigen::Index>& own) {
-    return Eigen::MatrixXd(
-        stiffness.Solve(columns, start.size() > 0
-                                     ? Eigen::MatrixXd(start(Eigen::all, own))
-                                     : start) /
-        scale_);
-  });
+  return ByStiffness(
+      forces, [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns,
+                  const std::vector<Eigen::Index>& own) {
+        Eigen::MatrixXd x = stiffness.Solve(
+            columns, start.size() > 0 ? Eigen::MatrixXd(start(Eigen::all, own))
+                                      : Eigen::MatrixXd());
+        x /= scale_;
+        return x;
+      });
 }
 
 Eigen::MatrixXd Equilibrium::Extend(const Eigen::MatrixXd& held) {

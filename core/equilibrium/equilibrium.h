@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/equilibrium/forward_model.h"
@@ -76,12 +77,24 @@ class Equilibrium : public ForwardModel {
 
   /// The part of u that the held displacements cause, which does not change
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
-  const Eigen::MatrixXd& SupportResponse() const { return support_response_; }
+  Eigen::MatrixXd SupportResponse() const { return OrZeros(support_response_); }
 
   /// A pass and n solves for each load case; nothing where the directions are
   /// those of the last call and neither moduli nor supports have changed since,
   /// because searches within bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
+  /// Gives back the memory of the last sensitivities.
+  void ForgetSensitivities() {
+    directions_.resize(0, 0);
+    sensitivities_.resize(0, 0);
+  }
+  using ForwardModel::BeginWith;
+  /// Begins the iterations of the next Solve and Sensitivities with these.
+  void BeginWith(Eigen::MatrixXd displacement, Eigen::MatrixXd sensitivities) {
+    directions_.resize(0, 0);
+    displacement_ = std::move(displacement);
+    sensitivities_ = std::move(sensitivities);
+  }
   /// A solve for each column.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
   /// A pass.
@@ -99,7 +112,9 @@ class Equilibrium : public ForwardModel {
   const Eigen::MatrixXd& Load() const override { return load_; }
   /// Returns the given displacements, zero in the free rows: num_dofs x
   /// num_load_cases.
-  const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
+  Eigen::MatrixXd HeldDisplacement() const {
+    return OrZeros(held_displacement_);
+  }
 
   // A solve for each column of the next four.
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& held) override;
@@ -146,6 +161,12 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd SolveFrom(const Eigen::MatrixXd& start,
                             const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
+  /// Returns the values, or zeros where there are none.
+  Eigen::MatrixXd OrZeros(const Eigen::MatrixXd& values) const {
+    return values.size() > 0
+               ? values
+               : Eigen::MatrixXd::Zero(load_.rows(), load_.cols());
+  }
 
   std::unique_ptr<NestedStiffness> values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
@@ -155,10 +176,12 @@ class Equilibrium : public ForwardModel {
   mutable std::optional<NodeGraph> graph_;
   std::vector<std::size_t> stiffness_of_case_;
   Eigen::MatrixXd load_;
-  Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
+  /// HeldDisplacement; empty where all of them are zero.
+  Eigen::MatrixXd held_displacement_;
   /// The first load case that is held as this one, at the same displacements.
   std::vector<Eigen::Index> first_held_alike_;
   Eigen::MatrixXd displacement_;
+  /// SupportResponse; empty where that is zero, and before the first Solve.
   Eigen::MatrixXd support_response_;
   /// The last sensitivities, with which iterations begin, and their directions,
   /// which are empty where the displacement has changed.

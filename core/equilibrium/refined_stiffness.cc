@@ -49,10 +49,10 @@ bool RefinedStiffness::SetUpCycle() {
     };
     const FinerNodes& nodes = stiffness_->NodesAfter(i - 1);
     space.restrict = [this, i, &nodes](const Eigen::MatrixXd& x) {
-      return Eigen::MatrixXd(IsFreeIn(i - 1).asDiagonal() * nodes.Restrict(x));
+      return OfFree(i - 1, nodes.Restrict(x));
     };
     space.interpolate = [this, i, &nodes](const Eigen::MatrixXd& x) {
-      return Eigen::MatrixXd(IsFreeIn(i).asDiagonal() * nodes.Interpolate(x));
+      return OfFree(i, nodes.Interpolate(x));
     };
   }
   return true;
@@ -63,9 +63,10 @@ bool RefinedStiffness::FactorizeFinest() {
       stiffness_->Blocks(Finest(), finest_->Graph()));
 }
 
-ConjugateGradientResult RefinedStiffness::Iterate(
-    const Eigen::MatrixXd& all, const Eigen::MatrixXd& start) {
+ConjugateGradientResult RefinedStiffness::Iterate(const Eigen::MatrixXd& all,
+                                                  Eigen::MatrixXd start) {
   const Eigen::VectorXd& is_free = IsFree();
+  start = is_free.head(start.rows()).asDiagonal() * start;
   ConjugateGradientOptions options;
   options.tolerance = Tolerance();
   options.most_iterations = kMostIterations;
@@ -73,23 +74,21 @@ ConjugateGradientResult RefinedStiffness::Iterate(
   ConjugateGradientResult result = SolveByConjugateGradients(
       [&](const Eigen::MatrixXd& x) { return Multiply(Finest(), x); },
       [&](const Eigen::MatrixXd& x) { return Cycle(x); },
-      is_free.asDiagonal() * all,
-      start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
-      options);
+      is_free.asDiagonal() * all, std::move(start), options);
   work_.iterations += result.iterations;
   return result;
 }
 
 Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
-                                        const Eigen::MatrixXd& start) {
+                                        Eigen::MatrixXd start) {
   work_.solves += static_cast<int>(all.cols());
   if (finest_) {
     return finest_->Solve(all, StiffnessSolver::kAccurate, start);
   }
-  ConjugateGradientResult result = Iterate(all, start);
+  ConjugateGradientResult result = Iterate(all, std::move(start));
   // Coarse spaces may be those of other moduli.
   if (!result.has_converged && coarsest_.Renew()) {
-    result = Iterate(all, start);
+    result = Iterate(all, std::move(result.solution));
   }
   if (!result.has_converged) {
     finest_ = make_finest_();
@@ -114,9 +113,13 @@ Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
   if (space == Finest()) {
     ++work_.element_passes;
   }
-  Eigen::MatrixXd forces = stiffness_->Multiply(space, x);
-  forces.array().colwise() *= IsFreeIn(space).array();
-  return forces;
+  return OfFree(space, stiffness_->Multiply(space, x));
+}
+
+Eigen::MatrixXd RefinedStiffness::OfFree(std::size_t space,
+                                         Eigen::MatrixXd values) const {
+  values.array().colwise() *= IsFreeIn(space).array();
+  return values;
 }
 
 Eigen::MatrixXd RefinedStiffness::Cycle(const Eigen::MatrixXd& force) {

@@ -45,7 +45,7 @@ class RefinedStiffness : public SupportedStiffness {
   /// columns.
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                        const Eigen::MatrixXd& start) override;
+                        Eigen::MatrixXd start) override;
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all) override;
 
   Eigen::MatrixXd HeldForces(
@@ -70,8 +70,10 @@ class RefinedStiffness : public SupportedStiffness {
   const Eigen::VectorXd& IsFreeIn(std::size_t space) const {
     return space == Finest() ? IsFree() : is_free_of_coarser_[space];
   }
+  /// Returns the values with zeros in the held rows of a space.
+  Eigen::MatrixXd OfFree(std::size_t space, Eigen::MatrixXd values) const;
   ConjugateGradientResult Iterate(const Eigen::MatrixXd& all,
-                                  const Eigen::MatrixXd& start);
+                                  Eigen::MatrixXd start);
   bool FactorizeFinest();
   /// Sets up the V-cycle over the finer spaces.  Returns whether K is positive
   /// definite there, as far as it is seen.

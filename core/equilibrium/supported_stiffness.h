@@ -31,7 +31,7 @@ class SupportedStiffness {
   /// has a guess of each column, scaled in any way, which spares iterations
   /// where it is good.  Precondition, here and below: Factorize returned true.
   virtual Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                                const Eigen::MatrixXd& start) = 0;
+                                Eigen::MatrixXd start) = 0;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all) { return Solve(all, {}); }
 
   /// Does what Solve does as far as one application of the preconditioner does

@@ -6,12 +6,15 @@ namespace elastimate {
 
 StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
                                      const DegreesOfFreedom& degrees_of_freedom)
-    : mesh_(mesh), graph_(mesh), free_components_(mesh.NumNodes(), 0) {
+    : mesh_(mesh),
+      graph_(mesh),
+      dimension_(degrees_of_freedom.dimension),
+      free_components_(mesh.NumNodes(), 0) {
   for (const Eigen::Index dof : degrees_of_freedom.free) {
     free_components_[dof / degrees_of_freedom.dimension] |=
         1U << (dof % degrees_of_freedom.dimension);
   }
-  BuildPattern(degrees_of_freedom);
+  VisitValues([&](auto...) { ++num_values_; });
   h_ = Assemble({1, 0});
   j_ = Assemble({0, 1});
 }
@@ -34,60 +37,68 @@ void StiffnessAssembly::Combine(double poisson_ratio,
 void StiffnessAssembly::ForgetBases() {
   h_.resize(0);
   j_.resize(0);
+  pattern_ = {};
 }
 
-void StiffnessAssembly::BuildPattern(
-    const DegreesOfFreedom& degrees_of_freedom) {
-  const int dimension = degrees_of_freedom.dimension;
-  const Eigen::Index num_nodes = Eigen::Index(free_components_.size());
-  pattern_.column_start.assign(1, 0);
-  pattern_.column_start.reserve(degrees_of_freedom.NumFree() + 1);
-  pair_values_.assign(dimension * graph_.NumPairs(), -1);
-  for (Eigen::Index node = 0; node < num_nodes; ++node) {
-    for (int component = 0; component < dimension; ++component) {
-      if (degrees_of_freedom.place[dimension * node + component] < 0) {
+template <class Visitor>
+void StiffnessAssembly::VisitValues(const Visitor& visit) const {
+  const auto is_free = [this](Eigen::Index node, int component) {
+    return (free_components_[node] >> unsigned(component) & 1U) != 0;
+  };
+  for (Eigen::Index node = 0; node + 1 < Eigen::Index(graph_.start.size());
+       ++node) {
+    for (int component = 0; component < dimension_; ++component) {
+      if (!is_free(node, component)) {
         continue;
       }
       for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1];
            ++k) {
-        pair_values_[dimension * k + component] =
-            static_cast<std::int64_t>(pattern_.row.size());
-        const Eigen::Index first = dimension * Eigen::Index(graph_.row[k]);
         // Above the diagonal there is nothing to store.
-        const int first_component = graph_.row[k] == node ? component : 0;
-        for (int i = first_component; i < dimension; ++i) {
-          if (degrees_of_freedom.place[first + i] >= 0) {
-            pattern_.row.push_back(degrees_of_freedom.place[first + i]);
+        const int first = graph_.row[k] == node ? component : 0;
+        for (int i = first; i < dimension_; ++i) {
+          if (is_free(graph_.row[k], i)) {
+            visit(node, k, component, i);
           }
         }
       }
-      pattern_.column_start.push_back(
-          static_cast<std::int64_t>(pattern_.row.size()));
     }
   }
 }
 
-Eigen::VectorXd StiffnessAssembly::ValuesOf(
-    const Eigen::MatrixXd& blocks) const {
-  const Eigen::Index dimension = blocks.rows();
-  Eigen::VectorXd values(Eigen::Index(pattern_.row.size()));
-  for (Eigen::Index node = 0; node + 1 < Eigen::Index(graph_.start.size());
-       ++node) {
-    for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
-      const int row = graph_.row[k];
-      for (Eigen::Index component = 0; component < dimension; ++component) {
-        Eigen::Index next = pair_values_[dimension * k + component];
-        if (next < 0) {
-          continue;
-        }
-        for (Eigen::Index i = row == node ? component : 0; i < dimension; ++i) {
-          if ((free_components_[row] >> unsigned(i) & 1U) != 0) {
-            values(next++) = blocks(i, dimension * k + component);
-          }
-        }
-      }
+const SymmetricPattern& StiffnessAssembly::Pattern() const {
+  if (!pattern_.column_start.empty()) {
+    return pattern_;
+  }
+  std::vector<std::int64_t> place(free_components_.size() * dimension_, -1);
+  std::int64_t num_free = 0;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    if ((free_components_[i / dimension_] >> unsigned(i % dimension_) & 1U) !=
+        0) {
+      place[i] = num_free++;
     }
   }
+  pattern_.row.reserve(num_values_);
+  pattern_.column_start.reserve(num_free + 1);
+  Eigen::Index last = -1;
+  VisitValues([&](Eigen::Index node, Eigen::Index k, int component, int i) {
+    const Eigen::Index column = dimension_ * node + component;
+    if (column != last) {
+      pattern_.column_start.push_back(std::int64_t(pattern_.row.size()));
+      last = column;
+    }
+    pattern_.row.push_back(place[dimension_ * Eigen::Index(graph_.row[k]) + i]);
+  });
+  pattern_.column_start.push_back(std::int64_t(pattern_.row.size()));
+  return pattern_;
+}
+
+Eigen::VectorXd StiffnessAssembly::ValuesOf(
+    const Eigen::MatrixXd& blocks) const {
+  Eigen::VectorXd values(num_values_);
+  double* value = values.data();
+  VisitValues([&](Eigen::Index /*node*/, Eigen::Index k, int component, int i) {
+    *value++ = blocks(i, dimension_ * k + component);
+  });
   return values;
 }
 

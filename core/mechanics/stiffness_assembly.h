@@ -26,9 +26,8 @@ struct SymmetricPattern {
 /// one fixed sparse pattern, so that A(nu) = H + nu J is one axpy.
 class StiffnessAssembly {
  public:
-  /// Assembles the pattern and the values.  Precondition: a valid mesh, which
-  /// has to outlive this object.  O(num_elements) time and memory; it forms no
-  /// triplets.
+  /// Assembles the values.  Precondition: a valid mesh, which has to outlive
+  /// this object.  O(num_elements) time and memory; it forms no triplets.
   StiffnessAssembly(const Mesh& mesh,
                     const DegreesOfFreedom& degrees_of_freedom);
 
@@ -37,7 +36,9 @@ class StiffnessAssembly {
   Eigen::VectorXd ValuesOf(const Eigen::MatrixXd& blocks) const;
 
   const NodeGraph& Graph() const { return graph_; }
-  const SymmetricPattern& Pattern() const { return pattern_; }
+  /// Returns the pattern, which is made when it is first asked for: multigrid
+  /// does without, and it takes as much memory as the values.
+  const SymmetricPattern& Pattern() const;
   const Eigen::VectorXd& H() const { return h_; }
   const Eigen::VectorXd& J() const { return j_; }
 
@@ -51,23 +52,26 @@ class StiffnessAssembly {
   /// the time.
   void Combine(double poisson_ratio, Eigen::VectorXd& values) const;
 
-  /// Gives back the memory of H and J.  Combine then takes an element pass.
+  /// Gives back the memory of H, J and the pattern.  Combine then takes an
+  /// element pass.
   void ForgetBases();
   bool HasBases() const { return h_.size() > 0; }
 
  private:
-  void BuildPattern(const DegreesOfFreedom& degrees_of_freedom);
+  /// Visits the values in their order: visit(node, k, component, i) for that of
+  /// a component of a node and component i of the row of pair k.
+  template <class Visitor>
+  void VisitValues(const Visitor& visit) const;
   /// Returns the values of a H + b J for the coefficients a, b.
   Eigen::VectorXd Assemble(const Eigen::Vector2d& coefficients) const;
 
   const Mesh& mesh_;
   NodeGraph graph_;
-  SymmetricPattern pattern_;
+  mutable SymmetricPattern pattern_;
+  Eigen::Index num_values_ = 0;
+  int dimension_;
   /// The free components of each node, as bits.
   std::vector<unsigned char> free_components_;
-  /// For each pair of nodes and each component of its column node, this says
-  /// where the rows of its row node begin in the values; -1 when held.
-  std::vector<std::int64_t> pair_values_;
   Eigen::VectorXd h_;
   Eigen::VectorXd j_;
 };

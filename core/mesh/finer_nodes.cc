@@ -9,7 +9,7 @@
 namespace elastimate {
 namespace {
 
-using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
+using Entries = std::vector<Eigen::Triplet<double>>;
 
 // Adds the weights of the nodes of an element at the middle of some of its
 // nodes.
@@ -18,7 +18,7 @@ void AddWeights(const Mesh& mesh, Eigen::Index element,
                 Entries& weights) {
   if (mesh.Order() == 1) {
     for (const int node : around) {
-      weights.emplace_back(row, node, 1 / double(around.size()));
+      weights.emplace_back(int(row), node, 1 / double(around.size()));
     }
     return;
   }
@@ -34,7 +34,7 @@ void AddWeights(const Mesh& mesh, Eigen::Index element,
       mesh, {Eigen::VectorXi::Constant(1, int(element)), middle});
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (values(i) != 0) {
-      weights.emplace_back(row, nodes(i), values(i));
+      weights.emplace_back(int(row), nodes(i), values(i));
     }
   }
 }

@@ -38,7 +38,7 @@ class FinerNodes {
   /// displacement of its elements.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
-  using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
+  using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   /// Returns the weights of the nodes of the mesh at the middle nodes,
   /// num_middles x num_nodes.
   const Weights& WeightsOfNodes() const { return weights_; }

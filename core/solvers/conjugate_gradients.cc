@@ -49,12 +49,13 @@ class LanczosMatrix {
 class Iterations {
  public:
   Iterations(const ColumnOperator& multiply, const ColumnOperator& precondition,
-             const Eigen::MatrixXd& right_hand_sides,
+             Eigen::MatrixXd right_hand_sides,
              const ConjugateGradientOptions& options)
-      : multiply_(multiply), precondition_(precondition), options_(options) {
+      : multiply_(multiply),
+        precondition_(precondition),
+        options_(options),
+        num_columns_(right_hand_sides.cols()) {
     result_.smallest_eigenvalue = options.smallest_eigenvalue;
-    result_.solution =
-        Eigen::MatrixXd::Zero(right_hand_sides.rows(), right_hand_sides.cols());
     const Eigen::RowVectorXd size = SumsOfMagnitudes(right_hand_sides);
     for (Eigen::Index k = 0; k < right_hand_sides.cols(); ++k) {
       // A column without a force has no displacement, whatever the guess.
@@ -63,17 +64,18 @@ class Iterations {
       }
     }
     result_.columns = int(columns_.size());
-    force_ = right_hand_sides(Eigen::all, columns_);
+    force_ = std::move(right_hand_sides);
+    KeepColumns(columns_, force_);
     residual_ = force_;
     x_ = Eigen::MatrixXd::Zero(force_.rows(), force_.cols());
     lanczos_.resize(columns_.size());
   }
 
-  void BeginWith(const Eigen::MatrixXd& start) {
-    if (start.cols() == 0 || columns_.empty()) {
+  void BeginWith(Eigen::MatrixXd guess) {
+    if (guess.cols() == 0 || columns_.empty()) {
       return;
     }
-    Eigen::MatrixXd guess = start(Eigen::all, columns_);
+    KeepColumns(columns_, guess);
     const Eigen::RowVectorXd size = SumsOfMagnitudes(guess);
     for (Eigen::Index k = 0; k < guess.cols(); ++k) {
       if (!std::isfinite(size(k))) {
@@ -85,8 +87,9 @@ class Iterations {
     const Eigen::RowVectorXd work = ProductsOfColumns(guess, force_);
     const Eigen::RowVectorXd scale =
         (energy.array() > 0).select(work.array() / energy.array(), 0.0);
-    x_ = guess * scale.asDiagonal();
     residual_ -= product * scale.asDiagonal();
+    x_ = std::move(guess);
+    x_ = x_ * scale.asDiagonal();
   }
 
   ConjugateGradientResult Run() {
@@ -95,6 +98,7 @@ class Iterations {
       ++step;
     }
     result_.has_converged = columns_.empty();
+    MakeSolution();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
       TakeEigenvaluesOf(lanczos_[k]);
@@ -103,6 +107,13 @@ class Iterations {
   }
 
  private:
+  static void KeepColumns(const std::vector<Eigen::Index>& kept,
+                          Eigen::MatrixXd& matrix) {
+    if (Eigen::Index(kept.size()) < matrix.cols()) {
+      matrix = matrix(Eigen::all, kept).eval();
+    }
+  }
+
   template <class A, class B>
   Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixBase<A>& a,
                                        const Eigen::MatrixBase<B>& b) const {
@@ -178,12 +189,20 @@ class Iterations {
     return rz <= most * result_.smallest_eigenvalue;
   }
 
+  // Takes memory for the solution once a column is done.
+  void MakeSolution() {
+    if (result_.solution.cols() == 0) {
+      result_.solution.setZero(x_.rows(), num_columns_);
+    }
+  }
+
   // Puts the columns that are done into the result, and keeps the others.
   void TakeWhatIsDone(Eigen::MatrixXd& z, Eigen::RowVectorXd& rz) {
     std::vector<Eigen::Index> kept;
     const Eigen::RowVectorXd energy = ProductsOfColumns(x_, force_ - residual_);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       if (IsDone(k, rz(Eigen::Index(k)), energy(Eigen::Index(k)))) {
+        MakeSolution();
         result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
       } else {
         kept.push_back(Eigen::Index(k));
@@ -195,7 +214,7 @@ class Iterations {
     for (Eigen::MatrixXd* const matrix :
          {&force_, &x_, &residual_, &direction_, &product_, &z}) {
       if (matrix->cols() > 0) {
-        *matrix = (*matrix)(Eigen::all, kept).eval();
+        KeepColumns(kept, *matrix);
       }
     }
     for (Eigen::RowVectorXd* const row : {&rz, &length_, &last_rz_}) {
@@ -214,6 +233,7 @@ class Iterations {
   const ColumnOperator& multiply_;
   const ColumnOperator& precondition_;
   const ConjugateGradientOptions& options_;
+  Eigen::Index num_columns_;
   ConjugateGradientResult result_;
   std::vector<Eigen::Index>
       columns_;  // Of the right-hand sides, in ascending order.
@@ -231,10 +251,11 @@ class Iterations {
 
 ConjugateGradientResult SolveByConjugateGradients(
     const ColumnOperator& multiply, const ColumnOperator& precondition,
-    const Eigen::MatrixXd& right_hand_sides, const Eigen::MatrixXd& start,
+    Eigen::MatrixXd right_hand_sides, Eigen::MatrixXd start,
     const ConjugateGradientOptions& options) {
-  Iterations iterations(multiply, precondition, right_hand_sides, options);
-  iterations.BeginWith(start);
+  Iterations iterations(multiply, precondition, std::move(right_hand_sides),
+                        options);
+  iterations.BeginWith(std::move(start));
   return iterations.Run();
 }
 

@@ -50,7 +50,7 @@ struct ConjugateGradientResult {
 /// were met, where a number is not finite, or after too many iterations.
 ConjugateGradientResult SolveByConjugateGradients(
     const ColumnOperator& multiply, const ColumnOperator& precondition,
-    const Eigen::MatrixXd& right_hand_sides, const Eigen::MatrixXd& start,
+    Eigen::MatrixXd right_hand_sides, Eigen::MatrixXd start,
     const ConjugateGradientOptions& options);
 
 }  // namespace elastimate

@@ -85,6 +85,14 @@ Eigen::MatrixXd Smooth(const CycleSpace& space, const Eigen::MatrixXd& force) {
   return x;
 }
 
+// Returns force - K x.
+Eigen::MatrixXd Rest(const CycleSpace& space, const Eigen::MatrixXd& force,
+                     const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd rest = space.multiply(x);
+  rest = force - rest;
+  return rest;
+}
+
 Eigen::MatrixXd CycleFrom(const std::vector<CycleSpace>& spaces,
                           std::size_t num_spaces,
                           const ColumnOperator& solve_coarsest,
@@ -94,9 +102,12 @@ Eigen::MatrixXd CycleFrom(const std::vector<CycleSpace>& spaces,
   }
   const CycleSpace& space = spaces[num_spaces - 1];
   Eigen::MatrixXd x = Smooth(space, force);
-  x += space.interpolate(CycleFrom(spaces, num_spaces - 1, solve_coarsest,
-                                   space.restrict(force - space.multiply(x))));
-  x += Smooth(space, force - space.multiply(x));
+  // What is left of the force is forgotten between its two uses, since columns
+  // of a fine space need much memory.
+  Eigen::MatrixXd coarse = space.restrict(Rest(space, force, x));
+  coarse = CycleFrom(spaces, num_spaces - 1, solve_coarsest, coarse);
+  x += space.interpolate(coarse);
+  x += Smooth(space, Rest(space, force, x));
   return x;
 }
 

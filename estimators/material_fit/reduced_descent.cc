@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
@@ -78,7 +79,7 @@ class ReducedDescent {
     return displacement - misfit_.SmallStrainModel().HeldDisplacement();
   }
   void AddPole(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
-               const Eigen::MatrixXd& sensitivities);
+               Eigen::MatrixXd sensitivities);
   /// df(u)/dx of each load case side by side, at the u of the check.
   Eigen::MatrixXd ForcesOfVariables();
   bool SolveForAdjoint(const Eigen::VectorXd& residual, double tolerance);
@@ -103,12 +104,24 @@ class ReducedDescent {
 bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
   // The first pole may be where an earlier descent ended, with the factor of
   // that.  A further one is set where that factor is too far away.
+  Equilibrium& model = misfit_.SmallStrainModel();
+  if (num_poles_ > 0) {
+    const FreeParameters& free = misfit_.Free();
+    if (reduced_.Solve(free.ModuliAt(x))) {
+      model.BeginWith(
+          reduced_.Displacement(),
+          reduced_.DisplacementSensitivities(free.ModuliJacobian(x)));
+    }
+    if (!misfit_.Factorize(x)) {
+      return false;
+    }
+  }
   Eigen::MatrixXd sensitivities;
-  if ((num_poles_ > 0 && !misfit_.Factorize(x)) ||
-      !misfit_.SolutionAt(x, &displacement_, &sensitivities)) {
+  if (!misfit_.SolutionAt(x, &displacement_, &sensitivities)) {
     return false;
   }
-  AddPole(x, displacement_, sensitivities);
+  model.ForgetSensitivities();
+  AddPole(x, displacement_, std::move(sensitivities));
   return true;
 }
 
@@ -148,15 +161,16 @@ std::optional<Eigen::VectorXd> ReducedDescent::SetTypicalPole() {
 
 void ReducedDescent::AddPole(const Eigen::VectorXd& x,
                              const Eigen::MatrixXd& displacement,
-                             const Eigen::MatrixXd& sensitivities) {
-  const Eigen::MatrixXd u = WithoutHeld(displacement);
-  const Eigen::Index n = sensitivities.cols() / u.cols();
-  Eigen::MatrixXd vectors(u.rows(), (n + 1) * u.cols());
-  for (Eigen::Index k = 0; k < u.cols(); ++k) {
-    vectors.col((n + 1) * k) = u.col(k);
+                             Eigen::MatrixXd sensitivities) {
+  const Eigen::Index n = sensitivities.cols() / displacement.cols();
+  Eigen::MatrixXd vectors(displacement.rows(), (n + 1) * displacement.cols());
+  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
     vectors.middleCols((n + 1) * k + 1, n) = sensitivities.middleCols(n * k, n);
   }
-  reduced_.Extend(misfit_.Free().ModuliAt(x), vectors);
+  sensitivities.resize(0, 0);  // Vectors of large meshes need much memory.
+  vectors(Eigen::all, Eigen::seq(0, Eigen::last, n + 1)) =
+      WithoutHeld(displacement);
+  reduced_.Extend(misfit_.Free().ModuliAt(x), std::move(vectors));
   pole_ = x;
   ++num_poles_;
 }
@@ -346,10 +360,11 @@ void ReducedDescent::Refine() {
     vectors.col(2 * k) = u.col(k);
     vectors.col(2 * k + 1) = adjoint_.col(k);
   }
-  reduced_.Extend(moduli_, vectors);
+  reduced_.Extend(moduli_, std::move(vectors));
 }
 
 void ReducedDescent::Finish(const Eigen::VectorXd& x) {
+  adjoint_.resize(0, 0);
   Eigen::MatrixXd sensitivities =
       reduced_.DisplacementSensitivities(directions_);
   const Eigen::MatrixXd forces = -ForcesOfVariables();

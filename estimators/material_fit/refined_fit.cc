@@ -48,11 +48,20 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   return variables;
 }
 
-void HoldNodesInDoubt(Supports& supports) {
-  for (const auto& [component, node, displacement] : supports.in_doubt) {
-    supports.held(component, node) = true;
-    supports.displacement(component, node) = displacement;
+// Whether the nodes where a support may end (Supports::in_doubt) are held.
+enum class SupportEnds { kFree, kHeld };
+
+// Returns the scene with quadratic elements.
+Scene WithQuadraticElements(const Scene& scene, SupportEnds ends) {
+  Scene quadratic = scene.mesh.Order() == 1 ? FinerScene(scene) : scene;
+  if (ends == SupportEnds::kHeld) {
+    Supports& supports = quadratic.supports;
+    for (const auto& [component, node, displacement] : supports.in_doubt) {
+      supports.held(component, node) = true;
+      supports.displacement(component, node) = displacement;
+    }
   }
+  return quadratic;
 }
 
 // Whether a divided mesh could hardly lower the errors, of which noise has
@@ -79,7 +88,9 @@ class Refinement {
       : scene_(scene),
         options_(options),
         descent_(descent),
-        neighbours_(scene.mesh) {}
+        neighbours_(scene.mesh) {
+    neighbours_.element_pairs.resize(0, 0);  // Only assembly needs these.
+  }
 
   MaterialFit Fit(const std::optional<Eigen::VectorXd>& start,
                   MisfitCurvature curvature);
@@ -102,30 +113,32 @@ class Refinement {
     SpaceFit& Finest() const { return divided ? *divided : *quadratic; }
   };
 
-  Chain FitQuadratic(const Scene& quadratic,
+  Chain FitQuadratic(SupportEnds ends,
                      const std::optional<Eigen::VectorXd>& start);
+  /// Takes the nodes where supports may end as free and as held.
+  Chain FitOverSupportEnds(const std::optional<Eigen::VectorXd>& start);
   /// Looks for a better minimum than the one that coarser elements led to.
   void LookForBetterMinimum(const SpaceFit& coarser, SpaceFit& fit) const;
-  void LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
+  void LeaveOut(const MaterialFit& of_all, SupportEnds ends,
                 const std::vector<const Scene*>& coarser, Chain& chain);
   static Chain MeanOf(Chain held, Chain free);
   /// Whether the mesh is to be divided.  Describes the second fit where its
   /// errors decide that.
-  bool AsksForDivision(const Scene& quadratic, Chain& chain) const;
+  bool AsksForDivision(Chain& chain) const;
   static void Describe(Chain& chain, SpaceFit* curved);
   /// Begins at the displacements of `last`, a fit of coarser elements, where
   /// there are some.
   std::unique_ptr<SpaceFit> MinimizeOn(
-      const Scene& scene, const std::optional<Eigen::VectorXd>& start,
+      Scene scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {}, SpaceFit* last = nullptr) {
-    auto space = std::make_unique<SpaceFit>(scene, options_, coarser,
+    auto space = std::make_unique<SpaceFit>(std::move(scene), options_, coarser,
                                             last != nullptr && !coarser.empty()
                                                 ? last->SolverOfCoarsest()
                                                 : nullptr);
     space->Misfit().SetNeighbours(neighbours_);
     if (last != nullptr && last->Fit().displacement.size() > 0) {
       space->Misfit().Model().BeginWith(
-          FinerNodes(last->OwnScene().mesh, scene.mesh)
+          FinerNodes(last->OwnScene().mesh, space->OwnScene().mesh)
               .Interpolate(last->Fit().displacement));
     }
     space->Minimize(descent_, start);
@@ -133,15 +146,16 @@ class Refinement {
     return space;
   }
   /// Fits again in the same space, to the measurement of a scene less some
-  /// outliers.
-  void Refit(const Scene& scene, const std::vector<Outlier>& left_out,
+  /// outliers.  A large scene is there only while it is needed.
+  template <class MakeScene>
+  void Refit(const MakeScene& scene, const std::vector<Outlier>& left_out,
              const std::optional<Eigen::VectorXd>& start,
              const std::vector<const Scene*>& coarser,
              std::unique_ptr<SpaceFit>& space) {
     if (HasUnknownMotion(scene_)) {
-      space = MinimizeOn(WithoutOutliers(scene, left_out), start, coarser);
+      space = MinimizeOn(WithoutOutliers(scene(), left_out), start, coarser);
     } else {
-      space->Measure(scene, SpaceFit::Rows::kOther, left_out);
+      space->Measure(scene(), SpaceFit::Rows::kOther, left_out);
       space->Minimize(descent_, start);
     }
   }
@@ -178,10 +192,10 @@ class Refinement {
                          return !material.bounds.empty();
                        });
   }
-  bool MayDivide(const Scene& quadratic) const {
+  bool MayDivide() const {
     return options_.refinement != Refine::kNever &&
            (options_.refinement == Refine::kAlways ||
-            quadratic.mesh.NumElements() <= MostDividedElements(scene_));
+            scene_.mesh.NumElements() <= MostDividedElements(scene_));
   }
 
   const Scene& scene_;
@@ -196,12 +210,15 @@ class Refinement {
   bool has_rival_axis_ = false;
 };
 
-void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
+void Refinement::LeaveOut(const MaterialFit& of_all, SupportEnds ends,
                           const std::vector<const Scene*>& coarser,
                           Chain& chain) {
+  const auto quadratic = [&] { return WithQuadraticElements(scene_, ends); };
+  // Where motions are unknown, each fit replaces the scene.
+  const Scene copy = HasUnknownMotion(scene_) ? quadratic() : Scene();
   bool is_refitted = false;
   const InlierFit inliers = LeaveOutliersOut(
-      quadratic,
+      HasUnknownMotion(scene_) ? copy : chain.quadratic->OwnScene(),
       [&](const std::vector<Outlier>& left_out,
           const std::optional<Eigen::VectorXd>& from) {
         is_refitted = true;
@@ -226,7 +243,8 @@ void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
     chain.left_out = left_out;
     chain.of_inliers = inliers.fit.estimate;
     if (linear_) {
-      Refit(scene_, left_out, linear_->Fit().Variables(), {}, linear_);
+      Refit([&]() -> const Scene& { return scene_; }, left_out,
+            linear_->Fit().Variables(), {}, linear_);
       chain.work = chain.work + linear_->Fit().estimate.work;
     }
   }
@@ -259,14 +277,15 @@ void Refinement::LookForBetterMinimum(const SpaceFit& coarser,
 }
 
 Refinement::Chain Refinement::FitQuadratic(
-    const Scene& quadratic, const std::optional<Eigen::VectorXd>& start) {
+    SupportEnds ends, const std::optional<Eigen::VectorXd>& start) {
   Chain chain;
   std::vector<const Scene*> coarser;
   // The elimination of motions asks for a solution for each of its steps.
   if (linear_ && !HasUnknownMotion(scene_)) {
     coarser.push_back(&scene_);
   }
-  chain.quadratic = MinimizeOn(quadratic, start, coarser, linear_.get());
+  chain.quadratic = MinimizeOn(WithQuadraticElements(scene_, ends), start,
+                               coarser, linear_.get());
   if (linear_) {
     LookForBetterMinimum(*linear_, *chain.quadratic);
   }
@@ -278,7 +297,7 @@ Refinement::Chain Refinement::FitQuadratic(
   chain.of_all = of_all.estimate;
   // A loss takes the weight from outliers.
   if (options_.loss == Loss::kNone) {
-    LeaveOut(of_all, quadratic, coarser, chain);
+    LeaveOut(of_all, ends, coarser, chain);
   }
   SpaceFit& fit = *chain.quadratic;
   least_of_quadratic_ = std::min(least_of_quadratic_, fit.SquareSum());
@@ -289,7 +308,7 @@ Refinement::Chain Refinement::FitQuadratic(
       chain.change->is_kept_for_its_size = true;
     }
   }
-  if (AsksForDivision(quadratic, chain)) {
+  if (AsksForDivision(chain)) {
     if (!HasUnknownMotion(scene_)) {
       coarser.push_back(&fit.OwnScene());
     }
@@ -306,8 +325,8 @@ Refinement::Chain Refinement::FitQuadratic(
   return chain;
 }
 
-bool Refinement::AsksForDivision(const Scene& quadratic, Chain& chain) const {
-  if (!MayDivide(quadratic) || IsOfLinearElements() ||
+bool Refinement::AsksForDivision(Chain& chain) const {
+  if (!MayDivide() || IsOfLinearElements() ||
       chain.quadratic->Fit().minimum->end == End::kSearchFailed) {
     return false;
   }
@@ -345,6 +364,25 @@ Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
   return std::move(best);
 }
 
+Refinement::Chain Refinement::FitOverSupportEnds(
+    const std::optional<Eigen::VectorXd>& start) {
+  Chain free = FitQuadratic(SupportEnds::kFree, start);
+  const std::vector<HeldComponent>& in_doubt =
+      free.quadratic->OwnScene().supports.in_doubt;
+  if (in_doubt.empty() || !free.Finest().Fit().minimum) {
+    return free;
+  }
+  const std::optional<Eigen::VectorXd> change =
+      free.divided ? std::nullopt : free.quadratic->ChangeByHolding(in_doubt);
+  if (change && free.change) {
+    free.change->by_supports = *change / 2;
+    return free;
+  }
+  Chain held = FitQuadratic(SupportEnds::kHeld, start);
+  return held.Finest().Fit().minimum ? MeanOf(std::move(held), std::move(free))
+                                     : std::move(free);
+}
+
 MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
                             MisfitCurvature curvature) {
   std::optional<Eigen::VectorXd> last = start;
@@ -358,15 +396,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
     last = AwayFromEnds(linear_->Misfit().Free(),
                         linear_->Fit().minimum->variables);
   }
-  Scene quadratic = scene_.mesh.Order() == 1 ? FinerScene(scene_) : scene_;
-  Chain chain = FitQuadratic(quadratic, last);
-  if (!quadratic.supports.in_doubt.empty() && chain.Finest().Fit().minimum) {
-    HoldNodesInDoubt(quadratic.supports);
-    Chain held = FitQuadratic(quadratic, last);
-    if (held.Finest().Fit().minimum) {
-      chain = MeanOf(std::move(held), std::move(chain));
-    }
-  }
+  Chain chain = FitOverSupportEnds(last);
   const bool is_of_linear_elements = IsOfLinearElements();
   // A wrong law of large strains may explain more with stiffer elements.
   const bool may_be_of_another_law =

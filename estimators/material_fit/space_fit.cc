@@ -19,6 +19,7 @@
 #include "elastimate/estimators/material_fit/small_strain_start.h"
 #include "elastimate/estimators/misfit/descent.h"
 #include "elastimate/estimators/misfit/material_verdicts.h"
+#include "elastimate/estimators/reduced_model/nearby_solve.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 
 namespace elastimate {
@@ -65,6 +66,22 @@ DisplacementMisfit::Weights WeightsAtMinimum(
     }
   }
   return weights;
+}
+
+// Whether a model that is linear at x has an error of a fifth of the step at
+// most: logarithms of moduli change by a fifth, and ratios go a fifth of the
+// way to a bound.
+bool IsShort(const Eigen::VectorXd& step, const Eigen::VectorXd& x,
+             const std::vector<Bounds>& bounds) {
+  constexpr double kLongest = 0.2;
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    const double way = std::min({1.0, bounds[i].upper.value_or(x(i) + 1) - x(i),
+                                 x(i) - bounds[i].lower.value_or(x(i) - 1)});
+    if (!(std::abs(step(i)) < kLongest * way)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 std::vector<const Scene*> WithFinest(std::vector<const Scene*> coarser,
@@ -411,6 +428,60 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
     return std::nullopt;
   }
   return change;
+}
+
+std::optional<Eigen::VectorXd> SpaceFit::ChangeByHolding(
+    const std::vector<HeldComponent>& components) {
+  const BoundedMinimum& minimum = *fit_.minimum;
+  Eigen::VectorXd rows;
+  Eigen::MatrixXd sensitivities;
+  if (misfit_.HasLargeStrains() || !misfit_.SmallStrainModel().IsRefined() ||
+      HasSupportsOfCases(scene_) ||
+      !misfit_.Evaluate(minimum.variables, &rows, &sensitivities)) {
+    return std::nullopt;
+  }
+  const std::optional<Eigen::MatrixXd> displacement =
+      DisplacementWithHeld(components);
+  if (!displacement) {
+    return std::nullopt;
+  }
+  Eigen::VectorXd moved = misfit_.Observed().Restrict(*displacement) -
+                          misfit_.Observed().Measured();
+  if (misfit_.RowWeights().factors.size() != 0) {
+    moved.array() *= misfit_.RowWeights().factors.array();
+  }
+  const Eigen::VectorXd step = -SolveLeastSquares(sensitivities, moved);
+  const bool is_better =
+      SquaredNorm(moved + sensitivities * step) < SquaredNorm(rows);
+  return !is_better && IsShort(step, minimum.variables,
+                               misfit_.Free().VariableBounds())
+             ? std::optional<Eigen::VectorXd>(step)
+             : std::nullopt;
+}
+
+std::optional<Eigen::MatrixXd> SpaceFit::DisplacementWithHeld(
+    const std::vector<HeldComponent>& components) {
+  constexpr double kAccuracy = 1e-5;
+  constexpr int kMostIterations = 200;
+  Equilibrium& model = misfit_.SmallStrainModel();
+  const Eigen::VectorXd moduli =
+      misfit_.Free().ModuliAt(fit_.minimum->variables);
+  Eigen::MatrixXd displacement = misfit_.Displacement();
+  const Eigen::VectorXd energies =
+      displacement.cwiseProduct(model.Forces().Multiply(moduli, displacement))
+          .colwise()
+          .sum();
+  std::vector<int> rows;
+  for (const auto& [component, node, held_at] : components) {
+    rows.push_back(int(scene_.mesh.Dimension() * node + component));
+    displacement.row(rows.back()).setConstant(held_at);
+  }
+  const std::optional<int> iterations =
+      SolveNearby(moduli, model.Load(), kAccuracy * energies.cwiseSqrt(),
+                  kMostIterations, model, displacement, rows);
+  fit_.estimate.work.element_passes += 2 + iterations.value_or(kMostIterations);
+  return iterations ? std::optional<Eigen::MatrixXd>(displacement)
+                    : std::nullopt;
 }
 
 MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,

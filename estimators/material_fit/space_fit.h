@@ -85,6 +85,15 @@ class SpaceFit {
   /// minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
+  /// Returns by how much the minimum moves where these components are held as
+  /// well: a solution, and a step of the model that is linear at the minimum.
+  /// Empty where that explains more of the displacements, so that it is to be
+  /// fitted, where the step is long or bounds are in its way, and where systems
+  /// are solved by factors or supports differ between load cases.
+  /// Precondition: there is a minimum.
+  std::optional<Eigen::VectorXd> ChangeByHolding(
+      const std::vector<HeldComponent>& components);
+
   /// Takes the measurement of another scene of the same specimen, at the same
   /// nodes or at others, less some outliers.  Minimize starts anew then.
   /// Preconditions: no unknown motions; other rows, if there are outliers.
@@ -126,6 +135,10 @@ class SpaceFit {
   /// variables; false where one of both has no solution.
   bool CompareRows(SpaceFit& coarse, const Eigen::VectorXd& variables,
                    Eigen::VectorXd& change);
+  /// Returns the displacement at the minimum where these components are held as
+  /// well; empty where iterations do not converge.
+  std::optional<Eigen::MatrixXd> DisplacementWithHeld(
+      const std::vector<HeldComponent>& components);
   Work WorkDone();
   const std::string& SolverNotice();
 

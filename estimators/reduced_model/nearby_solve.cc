@@ -1,6 +1,7 @@
 #include "elastimate/estimators/reduced_model/nearby_solve.h"
 
 #include <cmath>
+#include <utility>
 
 namespace elastimate {
 namespace {
@@ -20,22 +21,30 @@ Eigen::VectorXd Ratios(const Eigen::VectorXd& numerators,
 }  // namespace
 
 std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,
-                               const Eigen::MatrixXd& forces,
+                               Eigen::MatrixXd forces,
                                const Eigen::VectorXd& tolerances,
                                int most_iterations, Equilibrium& equilibrium,
-                               Eigen::MatrixXd& x) {
+                               Eigen::MatrixXd& x,
+                               const std::vector<int>& also_held) {
   const InternalForces& of_mesh = equilibrium.Forces();
-  Eigen::MatrixXd residual = forces - of_mesh.Multiply(moduli, x);
-  Eigen::MatrixXd preconditioned = equilibrium.Precondition(residual);
-  Eigen::MatrixXd direction = preconditioned;
-  Eigen::VectorXd products = ColumnProducts(residual, preconditioned);
+  const auto precondition = [&](Eigen::MatrixXd& residual) {
+    residual(also_held, Eigen::all).setZero();
+    Eigen::MatrixXd preconditioned = equilibrium.Precondition(residual);
+    preconditioned(also_held, Eigen::all).setZero();
+    return preconditioned;
+  };
+  Eigen::MatrixXd residual = std::move(forces);
+  residual -= of_mesh.Multiply(moduli, x);
+  Eigen::MatrixXd direction = precondition(residual);
+  Eigen::VectorXd products = ColumnProducts(residual, direction);
   Eigen::VectorXd last_steps;
   for (int i = 1; i <= most_iterations; ++i) {
-    const Eigen::MatrixXd of_direction = of_mesh.Multiply(moduli, direction);
+    Eigen::MatrixXd of_direction = of_mesh.Multiply(moduli, direction);
     const Eigen::VectorXd lengths =
         Ratios(products, ColumnProducts(direction, of_direction));
     x += direction * lengths.asDiagonal();
     residual -= of_direction * lengths.asDiagonal();
+    of_direction.resize(0, 0);  // Columns of large meshes need much memory.
     const Eigen::VectorXd steps =
         lengths.cwiseProduct(products).cwiseMax(0).cwiseSqrt();
     if (!steps.allFinite()) {
@@ -49,7 +58,7 @@ std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,
       return i;
     }
     last_steps = steps;
-    preconditioned = equilibrium.Precondition(residual);
+    const Eigen::MatrixXd preconditioned = precondition(residual);
     const Eigen::VectorXd next = ColumnProducts(residual, preconditioned);
     direction =
         preconditioned + direction * Ratios(next, products).asDiagonal();

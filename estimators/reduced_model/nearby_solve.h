@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 
@@ -21,12 +22,15 @@ namespace elastimate {
 /// `most_iterations` are needed.  Cost: an element pass and an application of
 /// the preconditioner for each column in each iteration.
 ///
+/// The rows `also_held` are held as well, at what x has there.
+///
 /// Precondition: the last Solve of the equilibrium returned true.
 std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,
-                               const Eigen::MatrixXd& forces,
+                               Eigen::MatrixXd forces,
                                const Eigen::VectorXd& tolerances,
                                int most_iterations, Equilibrium& equilibrium,
-                               Eigen::MatrixXd& x);
+                               Eigen::MatrixXd& x,
+                               const std::vector<int>& also_held = {});
 
 }  // namespace elastimate
 

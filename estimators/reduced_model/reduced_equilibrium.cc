@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
@@ -31,10 +32,11 @@ Eigen::VectorXd Scales(const Eigen::MatrixXd& columns,
 ReducedEquilibrium::ReducedEquilibrium(const Equilibrium& full,
                                        const ObservedDisplacements& observed)
     : forces_(full.Forces()), load_(full.Load()), observed_(observed) {
+  const Eigen::MatrixXd held = full.HeldDisplacement();
   for (Eigen::Index k = 0; k < load_.cols(); ++k) {
     LoadCase load_case;
-    load_case.held = full.HeldDisplacement().col(k);
-    if (!load_case.held.isZero(0)) {
+    if (!held.col(k).isZero(0)) {
+      load_case.held = held.col(k);
       load_case.held_columns = forces_.Columns(load_case.held);
       ++element_passes_;
     }
@@ -56,11 +58,13 @@ Eigen::MatrixXd ReducedEquilibrium::StiffnessOf(
 }
 
 void ReducedEquilibrium::Extend(const Eigen::VectorXd& moduli,
-                                const Eigen::MatrixXd& displacements) {
+                                Eigen::MatrixXd displacements) {
   const Eigen::Index n = displacements.cols() / load_.cols();
   for (Eigen::Index k = 0; k < load_.cols(); ++k) {
-    Append(k, NewVectors(moduli, cases_[k], displacements.middleCols(n * k, n)),
-           cases_[k]);
+    Eigen::MatrixXd columns =
+        load_.cols() == 1 ? std::move(displacements)
+                          : Eigen::MatrixXd(displacements.middleCols(n * k, n));
+    Append(k, NewVectors(moduli, cases_[k], std::move(columns)), cases_[k]);
   }
 }
 
@@ -104,13 +108,17 @@ Eigen::MatrixXd ReducedEquilibrium::NewVectors(const Eigen::VectorXd& moduli,
   return columns;
 }
 
-void ReducedEquilibrium::Append(Eigen::Index k, const Eigen::MatrixXd& vectors,
+void ReducedEquilibrium::Append(Eigen::Index k, Eigen::MatrixXd vectors,
                                 LoadCase& load_case) {
   const Eigen::Index old = load_case.basis.cols();
   const Eigen::Index m = old + vectors.cols();
   const Eigen::Index num_moduli = NumModuli();
-  load_case.basis.conservativeResize(Eigen::NoChange, m);
-  load_case.basis.rightCols(vectors.cols()) = vectors;
+  if (old == 0) {
+    load_case.basis = std::move(vectors);
+  } else {
+    load_case.basis.conservativeResize(Eigen::NoChange, m);
+    load_case.basis.rightCols(m - old) = vectors;
+  }
   Eigen::MatrixXd of_moduli(m, m * num_moduli);
   for (Eigen::Index i = 0; i < num_moduli; ++i) {
     of_moduli.block(0, m * i, old, old) =
@@ -212,7 +220,10 @@ Eigen::MatrixXd ReducedEquilibrium::Sensitivities(
 Eigen::MatrixXd ReducedEquilibrium::Displacement() const {
   Eigen::MatrixXd displacement(load_.rows(), load_.cols());
   for (Eigen::Index k = 0; k < load_.cols(); ++k) {
-    displacement.col(k) = cases_[k].held + cases_[k].basis * cases_[k].y;
+    displacement.col(k) = cases_[k].basis * cases_[k].y;
+    if (cases_[k].held.size() > 0) {
+      displacement.col(k) += cases_[k].held;
+    }
   }
   return displacement;
 }

@@ -31,8 +31,7 @@ class ReducedEquilibrium {
   /// of each load case side by side, and makes it orthonormal in the energy at
   /// these moduli.  For each load case n + 5 element passes and O(num_dofs
   /// (num_moduli n m + m^2)) for m vectors in all.
-  void Extend(const Eigen::VectorXd& moduli,
-              const Eigen::MatrixXd& displacements);
+  void Extend(const Eigen::VectorXd& moduli, Eigen::MatrixXd displacements);
 
   /// Solves for u.  False where A(theta) is not positive definite to working
   /// precision.  O(m^2 (num_moduli + m)) for each load case, as all below.
@@ -63,8 +62,8 @@ class ReducedEquilibrium {
 
  private:
   struct LoadCase {
-    Eigen::VectorXd held;          ///< u_held.
-    Eigen::MatrixXd held_columns;  ///< f_k(u_held); empty where that is zero.
+    Eigen::VectorXd held;          ///< u_held; empty where that is zero.
+    Eigen::MatrixXd held_columns;  ///< f_k(u_held), likewise.
     Eigen::MatrixXd basis;         ///< V, num_dofs x m.
     Eigen::MatrixXd of_moduli;     ///< V^T K_k V side by side, m x (m k).
     Eigen::VectorXd load;          ///< V^T f.
@@ -82,8 +81,7 @@ class ReducedEquilibrium {
   Eigen::MatrixXd NewVectors(const Eigen::VectorXd& moduli,
                              const LoadCase& load_case,
                              Eigen::MatrixXd columns);
-  void Append(Eigen::Index k, const Eigen::MatrixXd& vectors,
-              LoadCase& load_case);
+  void Append(Eigen::Index k, Eigen::MatrixXd vectors, LoadCase& load_case);
   /// A^-1 of some columns.
   static Eigen::MatrixXd SolveIn(const LoadCase& load_case,
                                  const Eigen::MatrixXd& columns);

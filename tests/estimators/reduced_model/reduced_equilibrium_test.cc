@@ -178,5 +178,39 @@ TEST_F(ReducedEquilibriumTest, SolvesNearbyByTheFactorAtHand) {
                    .has_value());
 }
 
+TEST_F(ReducedEquilibriumTest, SolvesNearbyWithOtherRowsHeldAsWell) {
+  const Eigen::VectorXd near = ModuliOf({2e3, 0.3, 5e3, 0.3});
+  ASSERT_TRUE(full_.Solve(near));
+  Eigen::MatrixXd x = full_.Displacement();
+  ASSERT_TRUE(full_.Solve(ModuliOf(pole_)));
+  const Eigen::MatrixXd forces = full_.Load();
+  const Eigen::VectorXd energies =
+      x.cwiseProduct(full_.Forces().Multiply(near, x)).colwise().sum();
+  // These rows are free, as their neighbours are.
+  const int last = static_cast<int>(x.rows()) - 1;
+  const std::vector<int> held = {last, last - 4};
+  const Eigen::MatrixXd before = x;
+  for (const int row : held) {
+    ASSERT_GT(x.row(row).norm(), 0);
+    x.row(row).setZero();
+  }
+  ASSERT_TRUE(SolveNearby(near, forces, 1e-9 * energies.cwiseSqrt(), 100, full_,
+                          x, held)
+                  .has_value());
+  EXPECT_GT((x - before).norm(), 1e-3 * before.norm());
+  Eigen::MatrixXd rest = forces - full_.Forces().Multiply(near, x);
+  for (const int row : held) {
+    EXPECT_EQ(x.row(row).norm(), 0);
+    EXPECT_GT(rest.row(row).norm(), 1e-3 * forces.norm());
+    rest.row(row).setZero();
+  }
+  for (Eigen::Index row = 0; row < rest.rows(); ++row) {
+    if ((before.row(row).array() != full_.HeldDisplacement().row(row).array())
+            .any()) {
+      EXPECT_LT(rest.row(row).norm(), 1e-6 * forces.norm()) << row;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace elastimate
