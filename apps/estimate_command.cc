@@ -167,6 +167,9 @@ int RunSeries(const std::vector<std::string>& arguments,
   const std::vector<FrameEstimate> frames = EstimateFrames(
       estimator, reading.scene, series, options,
       [&progress](const std::string& what) { progress->Show(what); });
+  if (frames.empty()) {
+    return kFramesSent;
+  }
   const Estimate joint = JointEstimate(reading.scene, options, estimator,
                                        frames, series.load_error);
   progress.reset();

@@ -19,6 +19,7 @@
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
 #include "apps/outputs.h"
+#include "apps/series.h"
 #include "apps/signals.h"
 #include "elastimate/core/package/version.h"
 #include "elastimate/io/text/printable.h"
@@ -147,6 +148,18 @@ int Run(const std::vector<std::string>& arguments) {
   return RunCommand(arguments[0], {arguments.begin() + 1, arguments.end()});
 }
 
+// Runs the command on another rank than 0, as far as its frames.
+void RunForFrames(const std::vector<std::string>& arguments) {
+  try {
+    if (Run(arguments) != kFramesSent) {
+      throw std::invalid_argument(
+          "the command is not that of rank 0; give all ranks the same");
+    }
+  } catch (const std::invalid_argument& error) {
+    SendReadiness(error.what());
+  }
+}
+
 }  // namespace
 
 std::string ButGot(const std::vector<std::string>& arguments) {
@@ -174,8 +187,11 @@ int main(int argc, char** argv) {
   elastimate::StartPetscWhenNeeded();
   int exit_code = elastimate::kNoEstimate;
   try {
+    const std::vector<std::string> arguments = {argv + 1, argv + argc};
     exit_code =
-        elastimate::StartRanks() ? elastimate::Run({argv + 1, argv + argc}) : 0;
+        elastimate::StartRanks([&] { elastimate::RunForFrames(arguments); })
+            ? elastimate::Run(arguments)
+            : 0;
   } catch (const std::bad_alloc&) {
     elastimate::EndForLackOfMemory();
   } catch (const std::exception& error) {

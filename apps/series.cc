@@ -1,5 +1,6 @@
 #include "apps/series.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -9,9 +10,12 @@
 #include <utility>
 
 #include "apps/flags.h"
+#include "apps/frame_fit.h"
 #include "apps/linear_algebra.h"
 #include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/core/parallel/ranks.h"
 #include "elastimate/core/scene/camera.h"
+#include "elastimate/core/solvers/multigrid.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -107,19 +111,155 @@ void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
 }
 
 // Compares each residual with that of the nearest earlier frame that has one.
-void CompareNeighbours(const std::vector<Eigen::VectorXd>& residuals,
-                       std::vector<FrameEstimate>& frames) {
+void CompareNeighbours(std::vector<FrameFit>& fits) {
   const Eigen::VectorXd* before = nullptr;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (residuals[i].size() == 0) {
+  for (auto& [frame, residual] : fits) {
+    if (residual.size() == 0) {
       continue;
     }
     if (before != nullptr) {
-      CompareWith(*before, residuals[i], frames[i]);
+      CompareWith(*before, residual, frame);
     }
-    before = &residuals[i];
+    before = &residual;
   }
 }
+
+std::string ReceiveText(const Ranks& ranks, int from) {
+  std::string text;
+  ranks.Wait(from);
+  ReceiveAll(ranks, from, text);
+  return text;
+}
+
+// Throws on rank 0 where another rank has other frames, or none.
+void CheckFramesOfRanks(const Ranks& ranks, std::size_t num_frames) {
+  if (ranks.Rank() > 0) {
+    std::size_t num_frames_of_rank_0 = 0;
+    ranks.Receive(0, &num_frames_of_rank_0, sizeof(num_frames_of_rank_0));
+    if (num_frames != num_frames_of_rank_0) {
+      throw std::invalid_argument(
+          "the number of frames is not that of rank 0; give all ranks the same "
+          "files");
+    }
+    return SendReadiness("");
+  }
+  for (int rank = 1; rank < ranks.Size(); ++rank) {
+    ranks.Send(rank, &num_frames, sizeof(num_frames));
+    const std::string why_not = ReceiveText(ranks, rank);
+    if (!why_not.empty()) {
+      throw std::invalid_argument("rank " + std::to_string(rank) + ": " +
+                                  why_not);
+    }
+  }
+}
+
+// Fits the frames of a series in groups.  Each frame may start from the one
+// before it in its group.  Threads and ranks take whole groups, so that no
+// estimate depends on how many of them there are.
+class SeriesFit {
+ public:
+  SeriesFit(const Estimator& estimator, const Scene& scene,
+            const FrameSeries& series, const EstimatorOptions& options,
+            const std::function<void(const std::string&)>& progress)
+      : estimator_(estimator),
+        scene_(scene),
+        series_(series),
+        options_(options),
+        progress_(progress),
+        fits_(series.files.size()) {}
+
+  // Returns the fits on rank 0, and none on other ranks.
+  std::vector<FrameFit> Run() {
+    // On larger meshes a fit uses several threads and ranks itself, and needs
+    // much memory.
+    constexpr Eigen::Index kMostNodes = 20000;
+    if (scene_.mesh.NumNodes() > kMostNodes) {
+      frames_of_group_ = fits_.size();
+      FitOnThreads(0, 1);
+    } else if (const Ranks* const ranks = RanksOfSolves()) {
+      WorkApart([this, ranks] { FitOnRanks(*ranks); });
+    } else {
+      FitOnThreads(0, NumGroups());
+    }
+    return std::move(fits_);
+  }
+
+ private:
+  std::size_t NumGroups() const {
+    return (fits_.size() + frames_of_group_ - 1) / frames_of_group_;
+  }
+  std::size_t FirstFrame(std::size_t group) const {
+    return std::min(group * frames_of_group_, fits_.size());
+  }
+
+  void FitFrame(std::size_t i, std::optional<PreparedEstimator>& prepared) {
+    auto& [frame, residual] = fits_[i];
+    frame.load = series_.Load(i);
+    try {
+      std::unique_lock<std::mutex> lock(reading_);
+      progress_("frame " + std::to_string(++num_started_) + " of " +
+                std::to_string(num_own_));
+      const LoadCase measured = ReadFrame(series_, i);
+      lock.unlock();
+      Prepare(estimator_, scene_, measured, options_, prepared);
+      frame.estimate = prepared->RunLoadCases({measured});
+      residual = ResidualOf(scene_, measured, frame.estimate);
+    } catch (const std::invalid_argument& error) {
+      frame.estimate = NotRun(error.what());
+    }
+  }
+
+  void FitOnThreads(std::size_t begin, std::size_t end) {
+    num_own_ = FirstFrame(end) - FirstFrame(begin);
+    ForBlocks(end - begin, [&](std::size_t first, std::size_t last) {
+      std::optional<PreparedEstimator> prepared;
+      for (std::size_t i = FirstFrame(begin + first);
+           i < FirstFrame(begin + last); ++i) {
+        if (prepared && i % frames_of_group_ == 0) {
+          prepared->ForgetStart();
+        }
+        FitFrame(i, prepared);
+      }
+    });
+  }
+
+  void FitOnRanks(const Ranks& ranks) {
+    CheckFramesOfRanks(ranks, fits_.size());
+    const auto first_group = [&](int rank) {
+      return NumGroups() * std::size_t(rank) / std::size_t(ranks.Size());
+    };
+    const auto first_fit = [&](int rank) {
+      return fits_.begin() + std::ptrdiff_t(FirstFrame(first_group(rank)));
+    };
+    const int own = ranks.Rank();
+    FitOnThreads(first_group(own), first_group(own + 1));
+    if (own > 0) {
+      SendAll(ranks, 0, BytesOf({first_fit(own), first_fit(own + 1)}));
+      fits_.clear();
+      return;
+    }
+    for (int rank = 1; rank < ranks.Size(); ++rank) {
+      std::vector<FrameFit> fits = FitsOf(ReceiveText(ranks, rank));
+      std::move(fits.begin(), fits.end(), first_fit(rank));
+    }
+    for (FrameFit& fit : fits_) {
+      fit.frame.estimate.work.ranks = ranks.Size();
+    }
+  }
+
+  const Estimator& estimator_;
+  const Scene& scene_;
+  const FrameSeries& series_;
+  const EstimatorOptions& options_;
+  const std::function<void(const std::string&)>& progress_;
+  std::vector<FrameFit> fits_;
+  // Short groups divide evenly, and long ones save steps of iterations.
+  std::size_t frames_of_group_ = 4;
+  std::size_t num_own_ = 0;  // The frames of this rank.
+  std::size_t num_started_ = 0;
+  // A reader keeps what the frames have in common.
+  std::mutex reading_;
+};
 
 }  // namespace
 
@@ -131,43 +271,22 @@ LoadCase ReadFrame(const FrameSeries& series, std::size_t i) {
   return frame;
 }
 
+void SendReadiness(const std::string& why_not) {
+  SendAll(*RanksOfSolves(), 0, why_not);
+}
+
 std::vector<FrameEstimate> EstimateFrames(
     const Estimator& estimator, const Scene& scene, const FrameSeries& series,
     const EstimatorOptions& options,
     const std::function<void(const std::string&)>& progress) {
   CheckFirst(estimator, scene, series, options);
-  const std::size_t num_frames = series.files.size();
-  std::vector<FrameEstimate> frames(num_frames);
-  std::vector<Eigen::VectorXd> residuals(num_frames);
-  std::size_t num_started = 0;
-  // A reader keeps what the frames have in common.
-  std::mutex reading;
-  const auto estimate_block = [&](std::size_t begin, std::size_t end) {
-    std::optional<PreparedEstimator> prepared;
-    for (std::size_t i = begin; i < end; ++i) {
-      frames[i].load = series.Load(i);
-      try {
-        std::unique_lock<std::mutex> lock(reading);
-        progress("frame " + std::to_string(++num_started) + " of " +
-                 std::to_string(num_frames));
-        const LoadCase frame = ReadFrame(series, i);
-        lock.unlock();
-        Prepare(estimator, scene, frame, options, prepared);
-        frames[i].estimate = prepared->RunLoadCases({frame});
-        residuals[i] = ResidualOf(scene, frame, frames[i].estimate);
-      } catch (const std::invalid_argument& error) {
-        frames[i].estimate = NotRun(error.what());
-      }
-    }
-  };
-  // On larger meshes a fit uses several threads itself, and needs much memory.
-  constexpr Eigen::Index kMostNodes = 20000;
-  if (scene.mesh.NumNodes() > kMostNodes) {
-    estimate_block(0, num_frames);
-  } else {
-    ForBlocks(num_frames, estimate_block);
+  std::vector<FrameFit> fits =
+      SeriesFit(estimator, scene, series, options, progress).Run();
+  CompareNeighbours(fits);
+  std::vector<FrameEstimate> frames(fits.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i] = std::move(fits[i].frame);
   }
-  CompareNeighbours(residuals, frames);
   return frames;
 }
 

@@ -251,6 +251,7 @@ class PreparedUnknownMotion : public Preparation {
     return ladder.Finish();
   }
   bool TakesOtherLoadCases() const override { return true; }
+  void ForgetStart() override { fit_->ForgetStart(); }
 
  private:
   EstimatorOptions options_;

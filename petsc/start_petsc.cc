@@ -1,5 +1,6 @@
 #include "elastimate/petsc/start_petsc.h"
 
+#include <functional>
 #include <string>
 
 #include "elastimate/core/package/dynamic_module.h"
@@ -30,13 +31,13 @@ void StartPetscWhenNeeded() {
 #endif
 }
 
-bool StartRanks() {
+bool StartRanks([[maybe_unused]] const std::function<void()>& apart) {
   if (NumStarted().value_or(1) == 1) {
     return true;
   }
 #ifdef ELASTIMATE_PETSC_MODULE
   Start();
-  if (!ShareSolves()) {
+  if (!ShareSolves(apart)) {
     return false;
   }
 #endif

@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_PETSC_START_PETSC_H_
 #define ELASTIMATE_PETSC_START_PETSC_H_
 
+#include <functional>
+
 namespace elastimate {
 
 /// Has PETSc, and with it MPI for one process, started when multigrid is first
@@ -22,8 +24,8 @@ void StartPetscWhenNeeded();
 /// returns true, and on the others false once rank 0 has ended.  They then have
 /// nothing left to do.  Without PETSc they have nothing to do at once.
 /// Elsewhere it returns true and starts nothing.  The program must have called
-/// StartPetscWhenNeeded.
-[[nodiscard]] bool StartRanks();
+/// StartPetscWhenNeeded.  `apart` is that of ShareSolves.
+[[nodiscard]] bool StartRanks(const std::function<void()>& apart = [] {});
 
 }  // namespace elastimate
 

@@ -34,8 +34,8 @@ class Ranks {
   [[nodiscard]] virtual int Size() const = 0;
   virtual void Send(int to, const void* data, std::size_t bytes) const = 0;
   virtual void Receive(int from, void* data, std::size_t bytes) const = 0;
-  /// Sleeps until a message of rank 0 is there.
-  virtual void Wait() const = 0;
+  /// Sleeps until a message of that rank is there.
+  virtual void Wait(int from) const = 0;
   /// Replaces each value by its sum over the ranks, with the same bits on each.
   virtual void Sum(double* values, std::size_t size) const = 0;
   /// Returns the rows of all ranks.
@@ -46,7 +46,7 @@ class Ranks {
   [[nodiscard]] virtual std::shared_ptr<const Halo> MakeHalo(
       Eigen::Index num_own, const std::vector<int>& others,
       int block) const = 0;
-  /// Ends all ranks at once.
+  /// Ends all ranks at once, with the exit code 2.
   [[noreturn]] virtual void Abort() const = 0;
 };
 
@@ -55,6 +55,22 @@ inline void SumOverRanks(const Ranks* ranks, Eigen::RowVectorXd& values) {
   if (ranks != nullptr) {
     ranks->Sum(values.data(), std::size_t(values.size()));
   }
+}
+
+/// Sends the values of a std::vector or a std::string.
+template <class Values>
+void SendAll(const Ranks& ranks, int to, const Values& values) {
+  const std::size_t size = values.size();
+  ranks.Send(to, &size, sizeof(size));
+  ranks.Send(to, values.data(), size * sizeof(*values.data()));
+}
+
+template <class Values>
+void ReceiveAll(const Ranks& ranks, int from, Values& values) {
+  std::size_t size = 0;
+  ranks.Receive(from, &size, sizeof(size));
+  values.resize(size);
+  ranks.Receive(from, values.data(), size * sizeof(*values.data()));
 }
 
 }  // namespace elastimate

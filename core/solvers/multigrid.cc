@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cassert>
 #include <cstdlib>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,13 @@ bool FindSpaces(MultigridRows& rows, MultigridSpaces& spaces) {
 // The ranks that share the solves.  It is null where one process solves alone.
 const Ranks* ranks_of_solves = nullptr;
 
+// While this is true, each of them solves alone (WorkApart).
+bool are_apart = false;
+
+const Ranks* RanksThatSolveTogether() {
+  return are_apart ? nullptr : ranks_of_solves;
+}
+
 }  // namespace
 
 void SetStartOfPetsc(void (*start)()) { start_of_petsc = start; }
@@ -78,13 +86,14 @@ std::unique_ptr<LinearSolver> MakeMultigrid(
   NodeBlocks blocks(
       assembly.Graph(), degrees_of_freedom,
       HasLocality(mesh) ? std::vector<int>() : OrderForLocality(mesh).places);
-  return ranks_of_solves == nullptr
+  const Ranks* const ranks = RanksThatSolveTogether();
+  return ranks == nullptr
              ? MakeMultigridOfOneRank(mesh, std::move(blocks), FindSpaces)
              : MakeMultigridOfRanks(mesh, std::move(blocks), FindSpaces,
-                                    *ranks_of_solves);
+                                    *ranks);
 }
 
-bool ShareSolves() {
+bool ShareSolves(const std::function<void()>& apart) {
   const Module& module = TheModule();
   const Ranks* const ranks = module.ranks == nullptr ? nullptr : module.ranks();
   if (ranks == nullptr) {
@@ -93,7 +102,11 @@ bool ShareSolves() {
   ranks_of_solves = ranks;
   std::atexit(EndSharedSolves);
   if (ranks->Rank() > 0) {
-    ServeSolves(FindSpaces, *ranks);
+    ServeSolves(FindSpaces, *ranks, [&apart] {
+      are_apart = true;
+      apart();
+      are_apart = false;
+    });
     ranks_of_solves = nullptr;
     return false;
   }
@@ -108,7 +121,19 @@ void EndSharedSolves() {
 }
 
 int NumRanksOfSolves() {
-  return ranks_of_solves == nullptr ? 1 : ranks_of_solves->Size();
+  const Ranks* const ranks = RanksThatSolveTogether();
+  return ranks == nullptr ? 1 : ranks->Size();
+}
+
+const Ranks* RanksOfSolves() { return ranks_of_solves; }
+
+void WorkApart(const std::function<void()>& work) {
+  if (are_apart) {
+    return work();
+  }
+  are_apart = true;
+  WorkApart(*ranks_of_solves, work);
+  are_apart = false;
 }
 
 }  // namespace elastimate

@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_CORE_SOLVERS_MULTIGRID_H_
 #define ELASTIMATE_CORE_SOLVERS_MULTIGRID_H_
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,8 @@
 #include "elastimate/core/solvers/linear_solver.h"
 
 namespace elastimate {
+
+class Ranks;
 
 /// Has `start` start PETSc for the process when multigrid is first made.  To
 /// start it is up to the program, because PETSc starts MPI, which starts only
@@ -33,13 +36,24 @@ inline bool HasMultigrid() { return WhyNoMultigrid().empty(); }
 /// all call this function once, while PETSc runs.  On rank 0 it returns true at
 /// once: this rank goes on alone, and has the others take part in each set-up
 /// and solve.  On these it returns false once rank 0 calls EndSharedSolves or
-/// exits.  Where there is one process, it returns true and does nothing.
-[[nodiscard]] bool ShareSolves();
+/// exits.  Where there is one process, it returns true and does nothing.  The
+/// other ranks call `apart` each time when rank 0 calls WorkApart.
+[[nodiscard]] bool ShareSolves(const std::function<void()>& apart = [] {});
 /// Lets the other processes go on.  Rank 0 calls it before PETSc ends, when no
 /// solver of MakeMultigrid is left.
 void EndSharedSolves();
-/// Returns how many processes share the solves; 1 without ShareSolves.
+/// Returns how many processes share the solves; 1 without ShareSolves, and
+/// within WorkApart.
 [[nodiscard]] int NumRanksOfSolves();
+
+/// Returns the processes of ShareSolves; null where there is one.
+[[nodiscard]] const Ranks* RanksOfSolves();
+/// Does `work` on rank 0 while each other rank does what it gave ShareSolves.
+/// Meanwhile each process solves by itself.  Within that, another rank may call
+/// this function as well, which then does `work`.  An exception that leaves
+/// `work` on rank 0, or ends another rank, ends all of them.  Preconditions:
+/// RanksOfSolves() is not null, and no solver of MakeMultigrid is left.
+void WorkApart(const std::function<void()>& work);
 
 /// Returns an AlgebraicMultigrid whose coarse spaces PETSc finds; its Factorize
 /// fails where PETSc fails to start.  The last two arguments must outlive it.

@@ -123,6 +123,7 @@ enum class Task : std::int64_t {
   kPrecondition,
   kRenew,
   kForget,
+  kWorkApart,
   kEnd
 };
 
@@ -138,21 +139,6 @@ void Tell(const Ranks& ranks, const Order& order) {
   for (int rank = 1; rank < ranks.Size(); ++rank) {
     ranks.Send(rank, &order, sizeof(order));
   }
-}
-
-template <class T>
-void SendAll(const Ranks& ranks, int to, const std::vector<T>& values) {
-  const std::size_t size = values.size();
-  ranks.Send(to, &size, sizeof(size));
-  ranks.Send(to, values.data(), size * sizeof(T));
-}
-
-template <class T>
-void ReceiveAll(const Ranks& ranks, std::vector<T>& values) {
-  std::size_t size = 0;
-  ranks.Receive(0, &size, sizeof(size));
-  values.resize(size);
-  ranks.Receive(0, values.data(), size * sizeof(T));
 }
 
 void SendColumns(const Ranks& ranks, int to, const Eigen::MatrixXd& columns) {
@@ -177,10 +163,10 @@ void SendRows(const Ranks& ranks, int to, const BlockMatrix& rows) {
 BlockMatrix ReceiveRows(const Ranks& ranks, int dimension) {
   BlockMatrix rows;
   rows.block_rows = rows.block_columns = dimension;
-  ReceiveAll(ranks, rows.start);
-  ReceiveAll(ranks, rows.column);
-  ReceiveAll(ranks, rows.entries);
-  ReceiveAll(ranks, rows.rest);
+  ReceiveAll(ranks, 0, rows.start);
+  ReceiveAll(ranks, 0, rows.column);
+  ReceiveAll(ranks, 0, rows.entries);
+  ReceiveAll(ranks, 0, rows.rest);
   return rows;
 }
 
@@ -423,10 +409,10 @@ std::unique_ptr<LinearSolver> MakeMultigridOfRanks(
 }
 
 void ServeSolves(const AlgebraicMultigrid::FindSpaces& find_spaces,
-                 const Ranks& ranks) {
+                 const Ranks& ranks, const std::function<void()>& apart) {
   std::map<std::int64_t, std::unique_ptr<SystemOfRank>> systems;
   for (;;) {
-    ranks.Wait();
+    ranks.Wait(0);
     const Step step(ranks);
     Order order = {};
     ranks.Receive(0, &order, sizeof(order));
@@ -445,10 +431,18 @@ void ServeSolves(const AlgebraicMultigrid::FindSpaces& find_spaces,
       ServePrecondition(ranks, order, *systems.at(order.system));
     } else if (order.task == Task::kRenew) {
       static_cast<void>(systems.at(order.system)->multigrid.Renew());
+    } else if (order.task == Task::kWorkApart) {
+      apart();
     } else {
       systems.erase(order.system);
     }
   }
+}
+
+void WorkApart(const Ranks& ranks, const std::function<void()>& work) {
+  const Step step(ranks);
+  Tell(ranks, {Task::kWorkApart});
+  work();
 }
 
 void EndService(const Ranks& ranks) {

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_SOLVERS_MULTIGRID_SOLVER_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,9 +29,13 @@ namespace elastimate {
     const Mesh& mesh, NodeBlocks blocks,
     AlgebraicMultigrid::FindSpaces find_spaces, const Ranks& ranks);
 
-/// Serves rank 0 until it calls EndService.  Each other rank calls it.
+/// Serves rank 0 until it calls EndService.  Each other rank calls it, and
+/// calls `apart` where rank 0 calls WorkApart.
 void ServeSolves(const AlgebraicMultigrid::FindSpaces& find_spaces,
-                 const Ranks& ranks);
+                 const Ranks& ranks, const std::function<void()>& apart);
+/// Does `work` on rank 0 while each of the others does what it gave
+/// ServeSolves.  None of it may solve together with other ranks.
+void WorkApart(const Ranks& ranks, const std::function<void()>& work);
 /// Lets the other ranks return from ServeSolves.  Each rank calls it before it
 /// exits: within a step that all take together, it ends all of them.
 void EndService(const Ranks& ranks);

@@ -100,11 +100,11 @@ void MpiRanks::Receive(int from, void* data, std::size_t bytes) const {
   }
 }
 
-void MpiRanks::Wait() const {
-  // A call of MPI that waits keeps a core busy, which rank 0 may need.
+void MpiRanks::Wait(int from) const {
+  // A call of MPI that waits keeps a core busy, which another rank may need.
   int is_there = 0;
   for (;;) {
-    MPI_Iprobe(0, kTag, communicator_, &is_there, MPI_STATUS_IGNORE);
+    MPI_Iprobe(from, kTag, communicator_, &is_there, MPI_STATUS_IGNORE);
     if (is_there != 0) {
       return;
     }
@@ -140,7 +140,8 @@ std::shared_ptr<const Halo> MpiRanks::MakeHalo(Eigen::Index num_own,
 }
 
 void MpiRanks::Abort() const {
-  MPI_Abort(communicator_, EXIT_FAILURE);
+  constexpr int kExitCode = 2;
+  MPI_Abort(communicator_, kExitCode);
   std::abort();
 }
 

@@ -20,7 +20,7 @@ class MpiRanks : public Ranks {
   int Size() const override { return size_; }
   void Send(int to, const void* data, std::size_t bytes) const override;
   void Receive(int from, void* data, std::size_t bytes) const override;
-  void Wait() const override;
+  void Wait(int from) const override;
   void Sum(double* values, std::size_t size) const override;
   Eigen::MatrixXd AllRows(const Eigen::MatrixXd& own) const override;
   std::shared_ptr<const Halo> MakeHalo(Eigen::Index num_own,

@@ -23,7 +23,9 @@ struct Work {
   int multigrid_set_ups = 0;
   int solves = 0;      ///< Right-hand sides that were solved for.
   int iterations = 0;  ///< Steps of conjugate gradients, all columns.
-  int ranks = 1;       ///< Processes that solved together (ShareSolves).
+  /// Processes that solved together (ShareSolves), or each for some frames of a
+  /// series.
+  int ranks = 1;
 };
 
 inline Work operator+(const Work& a, const Work& b) {

@@ -129,6 +129,8 @@ Estimate PreparedEstimator::Run(
   return estimate;
 }
 
+void PreparedEstimator::ForgetStart() { state_->preparation->ForgetStart(); }
+
 Estimate PreparedEstimator::RunHere() {
   const Scene& scene = state_->scene;
   const std::vector<Finding> findings = CheckMeasurements(scene);

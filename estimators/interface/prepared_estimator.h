@@ -27,6 +27,8 @@ class Preparation {
   /// Whether Run takes other load cases altogether: what it keeps is of the
   /// specimen alone, if it keeps anything.
   virtual bool TakesOtherLoadCases() const { return false; }
+  /// Has the next Run start as the first one did.
+  virtual void ForgetStart() {}
 };
 
 /// An estimator for a specimen that is measured again and again under the same
@@ -64,6 +66,9 @@ class PreparedEstimator {
   /// starts where the last usable estimate ended.  Throws std::invalid_argument
   /// as Estimator::Run does, and takes other load cases all the same.
   [[nodiscard]] Estimate RunLoadCases(const std::vector<LoadCase>& load_cases);
+  /// Has the next estimate start as the first one did.  The rest of what is
+  /// prepared stays.
+  void ForgetStart();
 
  private:
   struct State;

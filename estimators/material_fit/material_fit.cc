@@ -89,6 +89,7 @@ class MaterialFitPreparation : public Preparation {
     return fit.estimate;
   }
   bool TakesOtherLoadCases() const override { return true; }
+  void ForgetStart() override { start_.reset(); }
 
  private:
   static bool IsGoodStart(const MaterialFit& fit) {

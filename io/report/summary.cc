@@ -251,17 +251,16 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
 
 std::string Solving(const Work& work) {
   const std::string solves = Counted(work.solves, "solve");
+  const std::string ranks =
+      work.ranks > 1 ? " on " + std::to_string(work.ranks) + " ranks, " : ", ";
   const std::string factorizations =
       Counted(work.factorizations, "factorisation") + ", ";
   if (work.multigrid_set_ups == 0) {
-    return factorizations + solves + ", ";
+    return factorizations + solves + ranks;
   }
   return (work.factorizations == 0 ? "" : factorizations) +
          Counted(work.multigrid_set_ups, "multigrid set-up") + ", " + solves +
-         " in " + Counted(work.iterations, "iteration") +
-         (work.ranks > 1 ? " on " + std::to_string(work.ranks) + " ranks"
-                         : "") +
-         ", ";
+         " in " + Counted(work.iterations, "iteration") + ranks;
 }
 
 std::string ListOf(const std::vector<int>& regions) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/solvers/multigrid.h"
@@ -128,6 +129,103 @@ TEST_F(SolvesOfRanks, EndWhereOneIsLost) {
                "--out=out.vtu : -n 1 false");
   EXPECT_NE(run.exit_code, 0);
   EXPECT_EQ(Files().count((folder_ / "out.vtu").string()), 0U);
+}
+
+// Nine frames of a body under one load, of which the last one cannot be read.
+class SeriesOfRanks : public SolvesOfRanks {
+ protected:
+  void SetUp() override {
+    SolvesOfRanks::SetUp();
+    if (IsSkipped()) {
+      return;
+    }
+    Succeed("generate cuboid --cells=3,3,4 --size=3,3,4 --out=body.vtu");
+    WriteScene("scene", "");
+    for (int i = 1; i <= 8; ++i) {
+      Succeed(
+          "simulate scene.json --youngs=1000 --nu=0.3 --noise_sd=1e-4 "
+          "--points=100 --seed=" +
+          std::to_string(i) + " --out=frame_" + std::to_string(i) + ".csv");
+    }
+    WriteText(folder_ / "frame_9.csv", "x,y,z,ux,uy,uz\n1,2,3,abc,4,5\n");
+    WriteScene("scene", R"(, "frames": {"files": "frame_*.csv"})");
+    WriteScene("fewer", R"(, "frames": {"files": ["frame_1.csv"]})");
+  }
+
+  void WriteScene(const std::string& name, const std::string& frames) const {
+    WriteText(folder_ / (name + ".json"), R"({
+  "mesh": "body.vtu", "origin": "computed",
+  "supports": [ {"nodes": {"box": [[-1, -1, -0.1], [4, 4, 0.1]]}} ],
+  "cases": [
+    { "loads": [ {"type": "force", "value": [10, 0, -20],
+                  "surface": {"box": [[-1, -1, 3.9], [4, 4, 4.1]]}} ] } ])" +
+                                              frames + "}");
+  }
+
+  // Returns the report, without what differs from run to run, and the table.
+  std::pair<nlohmann::json, std::string> FramesOn(
+      int num_ranks, const std::string& flags) const {
+    const ProgramRun run = RunOn(
+        num_ranks, "estimate scene.json --series=series.csv --json=- " + flags);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    nlohmann::json report = nlohmann::json::parse(run.output);
+    EXPECT_EQ(report["work"]["ranks"], num_ranks);
+    EXPECT_EQ(report["series"]["used"], 8);
+    report["work"].erase("ranks");
+    report.erase("seconds");
+    return {report, ReadText(folder_ / "series.csv")};
+  }
+
+  // Has rank 1 run with other arguments than rank 0.
+  void RefuseOther(const std::string& arguments,
+                   const std::string& sentence) const {
+    SCOPED_TRACE(arguments);
+    const auto before = Files();
+    const ProgramRun run =
+        RunRanks("-n 1 '" ELASTIMATE_PROGRAM
+                 "' estimate scene.json --estimator=reduced-fe --series=a.csv "
+                 ": -n 1 '" ELASTIMATE_PROGRAM "' " +
+                 arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.errors;
+    EXPECT_NE(run.errors.find("elastimate: rank 1: " + sentence),
+              std::string::npos)
+        << run.errors;
+    EXPECT_EQ(Files(), before);
+  }
+};
+
+TEST_F(SeriesOfRanks, IsThatOfOne) {
+  for (const std::string flags :
+       {"--estimator=iterative-fe",
+        "--estimator=auto --solver=multigrid --loss=huber"}) {
+    const auto [report, table] = FramesOn(1, flags);
+    EXPECT_NE(table.find("\n9,frame_9.csv,1.0,not_run,"), std::string::npos)
+        << table;
+    for (const int num_ranks : {2, 3, 4}) {
+      SCOPED_TRACE(flags + " on " + std::to_string(num_ranks));
+      const auto [report_of_ranks, table_of_ranks] = FramesOn(num_ranks, flags);
+      EXPECT_EQ(table_of_ranks, table);
+      EXPECT_EQ(report_of_ranks, report);
+    }
+  }
+}
+
+TEST_F(SeriesOfRanks, IsRefusedWithOneSentence) {
+  const auto before = Files();
+  const ProgramRun run =
+      RunOn(2, "estimate scene.json --estimator=virtual-fields --series=a.csv");
+  EXPECT_EQ(run.exit_code, 2);
+  const std::string place = "frame_1.csv: virtual-fields: ";
+  EXPECT_EQ(run.errors.find(place), run.errors.rfind(place)) << run.errors;
+  EXPECT_NE(run.errors.find(place), std::string::npos) << run.errors;
+  EXPECT_EQ(Files(), before);
+}
+
+TEST_F(SeriesOfRanks, EndsWhereOneHasOtherFiles) {
+  RefuseOther("estimate none.json", "none.json: ");
+  RefuseOther("estimate fewer.json --estimator=reduced-fe",
+              "the number of frames is not that of");
+  RefuseOther("check fewer.json", "the command is not that of rank 0");
 }
 
 }  // namespace

@@ -170,19 +170,14 @@ TEST_F(Series, IsTheSameWithAnyNumberOfThreads) {
                threads)
         .Json();
   };
-  const nlohmann::json one = estimate("1");
+  nlohmann::json one = estimate("1");
   const std::vector<std::string> rows_of_one = Rows();
   // More threads than frames.
-  const nlohmann::json several = estimate("9");
-  const std::vector<std::string> rows = Rows();
-  ASSERT_EQ(rows.size(), rows_of_one.size());
-  EXPECT_EQ(rows[3], rows_of_one[3]);
-  EXPECT_EQ(one["series"]["used"], several["series"]["used"]);
-  for (const char* value : {"youngs_modulus", "poisson_ratio"}) {
-    const double error = one["standard_error"][value];
-    EXPECT_NEAR(one[value], several[value], 1e-3 * error) << value;
-    EXPECT_NEAR(error, several["standard_error"][value], 1e-3 * error) << value;
-  }
+  nlohmann::json several = estimate("9");
+  EXPECT_EQ(Rows(), rows_of_one);
+  one.erase("seconds");
+  several.erase("seconds");
+  EXPECT_EQ(one, several);
 }
 
 TEST_F(Series, TellsThatTheModulusDependsOnTheLoad) {

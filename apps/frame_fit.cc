@@ -1,0 +1,196 @@
+#include "apps/frame_fit.h"
+
+#include <cstddef>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace elastimate {
+namespace {
+
+// Appends values to bytes or, where it was made of bytes, takes the values from
+// these, in the same order.  The names of all fields of a struct are listed
+// once, so that a struct which gets another field does not compile.
+class FitArchive {
+ public:
+  FitArchive() = default;
+  explicit FitArchive(std::string bytes)
+      : bytes_(std::move(bytes)), is_reading_(true) {}
+
+  template <class... Values>
+  void All(Values&... values) {
+    (Pass(values), ...);
+  }
+  std::string TakeBytes() { return std::move(bytes_); }
+
+ private:
+  void PassBytes(void* value, std::size_t size) {
+    if (size == 0) {  // The address of no values may be null.
+      return;
+    }
+    if (is_reading_) {
+      std::memcpy(value, bytes_.data() + place_, size);
+      place_ += size;
+    } else {
+      bytes_.append(static_cast<const char*>(value), size);
+    }
+  }
+
+  template <class Value>
+  void Pass(Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    PassBytes(&value, sizeof(value));
+  }
+  void Pass(std::string& text) {
+    std::size_t size = text.size();
+    Pass(size);
+    text.resize(size);
+    PassBytes(text.data(), size);
+  }
+  template <class Value>
+  void Pass(std::vector<Value>& values) {
+    std::size_t size = values.size();
+    Pass(size);
+    values.resize(size);
+    for (Value& value : values) {
+      Pass(value);
+    }
+  }
+  template <class Value>
+  void Pass(std::optional<Value>& value) {
+    bool is_there = value.has_value();
+    Pass(is_there);
+    if (is_there) {
+      Pass(value ? *value : value.emplace());
+    } else {
+      value.reset();
+    }
+  }
+  template <int kRows, int kColumns>
+  void Pass(Eigen::Matrix<double, kRows, kColumns>& matrix) {
+    Eigen::Index rows = matrix.rows();
+    Eigen::Index columns = matrix.cols();
+    All(rows, columns);
+    matrix.resize(rows, columns);
+    PassBytes(matrix.data(), std::size_t(matrix.size()) * sizeof(double));
+  }
+
+  void Pass(Finding& finding) {
+    auto& [code, severity, text, advice] = finding;
+    All(code, severity, text, advice);
+  }
+  void Pass(ParameterEstimate& parameter) {
+    auto& [name, symbol, regions, is_modulus, is_known, beside, limits, value,
+           standard_error, interval] = parameter;
+    All(name, symbol, regions, is_modulus, is_known, beside, limits, value,
+        standard_error, interval);
+  }
+  void Pass(StiffnessEstimate& stiffness) {
+    auto& [regions, value, standard_error] = stiffness;
+    All(regions, value, standard_error);
+  }
+  void Pass(AxisEstimate& axis) {
+    auto& [regions, first_rotation, direction, standard_error, anisotropy] =
+        axis;
+    All(regions, first_rotation, direction, standard_error, anisotropy);
+  }
+  void Pass(ErrorBudget& budget) {
+    auto& [noise, bias, model, outliers, discretization, curvature, law,
+           kinematics, section, prior] = budget;
+    All(noise, bias, model, outliers, discretization, curvature, law,
+        kinematics, section, prior);
+  }
+  void Pass(Camera& camera) {
+    auto& [rotation, translation] = camera;
+    All(rotation, translation);
+  }
+  void Pass(MaterialEstimate& material) {
+    auto& [regions, determination, energy_share, residual_chi_square,
+           residual_correlation, largest_differences] = material;
+    All(regions, determination, energy_share, residual_chi_square,
+        residual_correlation, largest_differences);
+  }
+  void Pass(LawComparison& comparison) {
+    auto& [law, num_parameters, chi_square, criterion] = comparison;
+    All(law, num_parameters, chi_square, criterion);
+  }
+  void Pass(MapEstimate& map) {
+    auto& [status, findings, verdict, field_log_evidence, region_log_evidence,
+           supported_parameters, youngs_modulus, youngs_modulus_standard_error,
+           resolution_length, regions, boundary, region_of_element,
+           mean_youngs_modulus, poisson_ratio, covariance, mesh_covariance,
+           noise_sd, displacement_residual, fitted_displacement, cameras,
+           is_scale_known, element_order, work] = map;
+    All(status, findings, verdict, field_log_evidence, region_log_evidence,
+        supported_parameters, youngs_modulus, youngs_modulus_standard_error,
+        resolution_length, regions, boundary, region_of_element,
+        mean_youngs_modulus, poisson_ratio, covariance, mesh_covariance,
+        noise_sd, displacement_residual, fitted_displacement, cameras,
+        is_scale_known, element_order, work);
+  }
+  void Pass(Rung& rung) {
+    auto& [estimator, element_order, status, elasticity, work, seconds,
+           decision] = rung;
+    All(estimator, element_order, status, elasticity, work, seconds, decision);
+  }
+  void Pass(StageTime& time) {
+    auto& [stage, seconds] = time;
+    All(stage, seconds);
+  }
+  void Pass(Estimate& estimate) {
+    // No frame has merges or a series.
+    auto& [estimator, status, element_order, mesh_divisions, is_model_in_doubt,
+           message, elasticity, covariance, findings, parameters,
+           parameter_covariance, stiffnesses, axes, shear_modulus, error_budget,
+           deformation, poisson_ratio_interval, why_no_standard_error, noise_sd,
+           noise_degrees_of_freedom, force_residual, displacement_residual,
+           identifiability_angle, noise_attenuation, residual_correlation,
+           correlation_length, discretization_error,
+           poisson_ratio_discretization_error, discretization_correction,
+           uncorrected_parameters, outliers, fitted_displacement, cameras,
+           active_bounds, materials, combinations, merges, laws,
+           large_strain_law, map, series, rungs, work, stages, seconds] =
+        estimate;
+    All(estimator, status, element_order, mesh_divisions, is_model_in_doubt,
+        message, elasticity, covariance, findings, parameters,
+        parameter_covariance, stiffnesses, axes, shear_modulus, error_budget,
+        deformation, poisson_ratio_interval, why_no_standard_error, noise_sd,
+        noise_degrees_of_freedom, force_residual, displacement_residual,
+        identifiability_angle, noise_attenuation, residual_correlation,
+        correlation_length, discretization_error,
+        poisson_ratio_discretization_error, discretization_correction,
+        uncorrected_parameters, outliers, fitted_displacement, cameras,
+        active_bounds, materials, combinations, laws, large_strain_law, map,
+        rungs, work, stages, seconds);
+  }
+  void Pass(FrameEstimate& frame) {
+    auto& [load, estimate, likeness, num_alike] = frame;
+    All(load, estimate, likeness, num_alike);
+  }
+  void Pass(FrameFit& fit) {
+    auto& [frame, residual] = fit;
+    All(frame, residual);
+  }
+
+  std::string bytes_;
+  bool is_reading_ = false;
+  std::size_t place_ = 0;
+};
+
+}  // namespace
+
+std::string BytesOf(std::vector<FrameFit> fits) {
+  FitArchive archive;
+  archive.All(fits);
+  return archive.TakeBytes();
+}
+
+std::vector<FrameFit> FitsOf(std::string bytes) {
+  FitArchive archive(std::move(bytes));
+  std::vector<FrameFit> fits;
+  archive.All(fits);
+  return fits;
+}
+
+}  // namespace elastimate
