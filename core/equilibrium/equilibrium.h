@@ -83,11 +83,8 @@ class Equilibrium : public ForwardModel {
   /// those of the last call and neither moduli nor supports have changed since,
   /// because searches within bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
-  /// Gives back the memory of the last sensitivities.
-  void ForgetSensitivities() {
-    directions_.resize(0, 0);
-    sensitivities_.resize(0, 0);
-  }
+  /// Gives back the memory of the last displacement and sensitivities.
+  void ForgetSolution() { BeginWith({}, {}); }
   using ForwardModel::BeginWith;
   /// Begins the iterations of the next Solve and Sensitivities with these.
   void BeginWith(Eigen::MatrixXd displacement, Eigen::MatrixXd sensitivities) {

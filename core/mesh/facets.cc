@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -19,25 +20,40 @@ struct ElementFace {
   int index;
 };
 
+// Returns the faces of all elements, those with the same vertices side by side.
 std::vector<ElementFace> FacesOf(const Mesh& mesh) {
   const auto& of_element = mesh.Topology().faces;
-  std::vector<ElementFace> faces;
-  faces.reserve(of_element.size() * mesh.NumElements());
-  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (std::size_t i = 0; i < of_element.size(); ++i) {
-      ElementFace face = {{-1, -1, -1, -1}, element, static_cast<int>(i)};
-      for (std::size_t k = 0; k < of_element[i].size(); ++k) {
-        face.sorted[k] = mesh.elements(of_element[i][k], element);
+  const auto visit = [&](const auto& visitor) {
+    for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+      for (std::size_t i = 0; i < of_element.size(); ++i) {
+        ElementFace face = {{-1, -1, -1, -1}, element, static_cast<int>(i)};
+        for (std::size_t k = 0; k < of_element[i].size(); ++k) {
+          face.sorted[k] = mesh.elements(of_element[i][k], element);
+        }
+        std::sort(face.sorted.begin(), face.sorted.end());
+        visitor(*std::find_if(face.sorted.begin(), face.sorted.end(),
+                              [](int node) { return node >= 0; }),
+                face);
       }
-      std::sort(face.sorted.begin(), face.sorted.end());
-      faces.push_back(face);
     }
+  };
+  // The faces of each lowest vertex, which are few, are sorted by themselves.
+  std::vector<std::size_t> start(mesh.NumNodes() + 1, 0);
+  visit([&](int lowest, const ElementFace&) { ++start[lowest + 1]; });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<ElementFace> faces(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  visit([&](int lowest, const ElementFace& face) {
+    faces[next[lowest]++] = face;
+  });
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    std::sort(faces.begin() + std::ptrdiff_t(start[node]),
+              faces.begin() + std::ptrdiff_t(start[node + 1]),
+              [](const ElementFace& a, const ElementFace& b) {
+                return std::tie(a.sorted, a.element) <
+                       std::tie(b.sorted, b.element);
+              });
   }
-  std::sort(faces.begin(), faces.end(),
-            [](const ElementFace& a, const ElementFace& b) {
-              return std::tie(a.sorted, a.element) <
-                     std::tie(b.sorted, b.element);
-            });
   return faces;
 }
 

@@ -58,10 +58,10 @@ std::vector<std::vector<int>> MiddlesOfFacet(
 
 // Tells which middles are inside the specimen while all their vertices are on
 // its surface.
-std::vector<bool> CrossingMiddles(const Mesh& mesh, const Middles& middles) {
+std::vector<bool> CrossingMiddles(const Mesh& mesh, const Middles& middles,
+                                  const Eigen::MatrixXi& facets) {
   std::vector<bool> node_on_surface(mesh.NumNodes(), false);
   std::vector<bool> middle_on_surface(middles.Size(), false);
-  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
   for (const auto& facet : facets.colwise()) {
     for (const int node : facet) {
       node_on_surface[node] = true;
@@ -83,9 +83,9 @@ std::vector<bool> CrossingMiddles(const Mesh& mesh, const Middles& middles) {
 // Returns the components of the middles of those elements that are held at a
 // node inside the specimen, where no support of its surface is.
 ComponentMask HeldInVolume(const ComponentMask& held, const Mesh& mesh,
-                           const Middles& middles) {
+                           const Middles& middles,
+                           const Eigen::MatrixXi& facets) {
   std::vector<bool> on_surface(mesh.NumNodes(), false);
-  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
   for (const int node : facets.reshaped()) {
     on_surface[node] = true;
   }
@@ -128,9 +128,11 @@ std::vector<int> WithMiddleNodes(const std::vector<int>& nodes,
 
 Supports WithMiddleSupports(const Supports& supports, const Mesh& mesh,
                             const Middles& middles) {
-  const std::vector<bool> crossing = CrossingMiddles(mesh, middles);
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  const std::vector<bool> crossing = CrossingMiddles(mesh, middles, facets);
   ComponentMask held = OfAllVertices(supports.held, middles);
-  const ComponentMask in_volume = HeldInVolume(supports.held, mesh, middles);
+  const ComponentMask in_volume =
+      HeldInVolume(supports.held, mesh, middles, facets);
   for (Eigen::Index i = 0; i < middles.Size(); ++i) {
     if (crossing[i]) {
       held.col(i) = held.col(i) && in_volume.col(i);

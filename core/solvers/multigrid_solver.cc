@@ -30,6 +30,7 @@ class RowsOfNodes : public MultigridRows {
     are_simplices = IsSimplex(mesh.kind);
   }
 
+  // Once the matrix is there, the values may be taken away.
   void Take(const Eigen::VectorXd& values) {
     values_ = &values;
     FreeMatrix();
@@ -40,7 +41,11 @@ class RowsOfNodes : public MultigridRows {
     }
     return matrix_;
   }
-  void FreeMatrix() override { matrix_ = {}; }
+  void FreeMatrix() override {
+    if (values_->size() > 0) {
+      matrix_ = {};
+    }
+  }
   const NodeBlocks& Blocks() const { return blocks_; }
 
  private:

@@ -132,6 +132,9 @@ bool StiffnessSolver::FactorizeValues() {
     const bool is_set_up = shared.solver->Factorize(shared.values);
     work_.multigrid_set_ups += shared.solver->NumSetUps() - set_ups_before;
     if (is_set_up) {
+      if (CanMakeValues()) {
+        shared.values.resize(0);  // Multigrid has its own matrix.
+      }
       return true;
     }
     FallBackToCholesky("could not be set up");
@@ -183,7 +186,7 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
         why << " at nu = " << poisson_ratio_;
       }
       FallBackToCholesky(why.str());
-      if (FactorizeValues()) {
+      if ((!CanMakeValues() || MakeValues()) && FactorizeValues()) {
         solution =
             shared.solver->Solve(right_hand_sides, tolerance, free_start);
       }

@@ -135,7 +135,9 @@ class StiffnessSolver {
     explicit Shared(const Supports& supports) : degrees_of_freedom(supports) {}
     DegreesOfFreedom degrees_of_freedom;
     std::unique_ptr<StiffnessAssembly> assembly;
-    Eigen::VectorXd values;  ///< The last matrix; its memory is used again.
+    /// The last matrix; empty where multigrid has taken it and MakeValues can
+    /// make it again.
+    Eigen::VectorXd values;
     std::unique_ptr<LinearSolver> solver;
     bool is_multigrid = false;
     std::string notice;
@@ -143,6 +145,10 @@ class StiffnessSolver {
   };
 
   explicit StiffnessSolver(std::shared_ptr<Shared> shared);
+  /// Whether MakeValues makes the last matrix.
+  bool CanMakeValues() const {
+    return make_blocks_ || !std::isnan(poisson_ratio_);
+  }
   bool MakeValues();
   bool FactorizeValues();
   bool FactorizeAgain();

@@ -80,11 +80,12 @@ class ReducedDescent {
   }
   void AddPole(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
                Eigen::MatrixXd sensitivities);
-  /// df(u)/dx of each load case side by side, at the u of the check.
-  Eigen::MatrixXd ForcesOfVariables();
+  /// df(u)/dp of each load case side by side, at the u of the check, for
+  /// directions d theta / dp.
+  Eigen::MatrixXd ForcesOf(const Eigen::MatrixXd& directions);
   bool SolveForAdjoint(const Eigen::VectorXd& residual, double tolerance);
-  bool SolveNear(const Eigen::MatrixXd& forces,
-                 const Eigen::VectorXd& tolerances, Eigen::MatrixXd& x);
+  bool SolveNear(Eigen::MatrixXd forces, const Eigen::VectorXd& tolerances,
+                 Eigen::MatrixXd& x);
 
   DisplacementMisfit& misfit_;
   ReducedEquilibrium reduced_;
@@ -120,7 +121,7 @@ bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
   if (!misfit_.SolutionAt(x, &displacement_, &sensitivities)) {
     return false;
   }
-  model.ForgetSensitivities();
+  misfit_.ForgetSolution();
   AddPole(x, displacement_, std::move(sensitivities));
   return true;
 }
@@ -155,7 +156,7 @@ std::optional<Eigen::VectorXd> ReducedDescent::SetTypicalPole() {
   const Eigen::MatrixXd& held = model.SupportResponse();
   displacement_ = held + (model.Displacement() - held) / scale;
   directions_ = free.ModuliJacobian(*x);
-  AddPole(*x, displacement_, model.SolveFor(-ForcesOfVariables()) / scale);
+  AddPole(*x, displacement_, model.SolveFor(-ForcesOf(directions_)) / scale);
   return x;
 }
 
@@ -247,44 +248,28 @@ BoundedMinimum ReducedDescent::MinimumFrom(const Eigen::VectorXd& x) {
   return minimum;
 }
 
-Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
-  const Eigen::Index n = directions_.cols();
+Eigen::MatrixXd ReducedDescent::ForcesOf(const Eigen::MatrixXd& directions) {
+  const Eigen::Index n = directions.cols();
   Eigen::MatrixXd forces(displacement_.rows(), n * displacement_.cols());
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
     forces.middleCols(n * k, n) =
         misfit_.SmallStrainModel().Forces().Columns(displacement_.col(k)) *
-        directions_;
+        directions;
   }
   return forces;
 }
 
-bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
+bool ReducedDescent::SolveNear(Eigen::MatrixXd forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
   Equilibrium& model = misfit_.SmallStrainModel();
-  if (!model.IsRefined()) {
-    const std::optional<int> iterations = SolveNearby(
-        moduli_, forces, tolerances, kMostIterationsByFactor, model, x);
-    element_passes_ += 1 + iterations.value_or(kMostIterationsByFactor);
-    return iterations.has_value();
-  }
-  // The vectors of one column of each load case need less memory, and a pass
-  // over isotropic quadratic elements takes as long for each column.
-  const Eigen::Index n = x.cols() / misfit_.Observed().NumLoadCases();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto of_cases = Eigen::seq(i, Eigen::last, n);
-    Eigen::MatrixXd columns = x(Eigen::all, of_cases);
-    const std::optional<int> iterations =
-        SolveNearby(moduli_, forces(Eigen::all, of_cases), tolerances(of_cases),
-                    kMostIterationsByCycle, model, columns);
-    element_passes_ += 1 + iterations.value_or(kMostIterationsByCycle);
-    if (!iterations) {
-      return false;
-    }
-    x(Eigen::all, of_cases) = columns;
-  }
-  return true;
+  const int most_iterations =
+      model.IsRefined() ? kMostIterationsByCycle : kMostIterationsByFactor;
+  const std::optional<int> iterations = SolveNearby(
+      moduli_, std::move(forces), tolerances, most_iterations, model, x);
+  element_passes_ += 1 + iterations.value_or(most_iterations);
+  return iterations.has_value();
 }
 
 bool ReducedDescent::Check(const BoundedMinimum& minimum) {
@@ -327,7 +312,7 @@ bool ReducedDescent::Check(const BoundedMinimum& minimum) {
   if (!SolveForAdjoint(residual, tolerance / std::sqrt(largest))) {
     return false;
   }
-  const Eigen::MatrixXd forces = ForcesOfVariables();
+  const Eigen::MatrixXd forces = ForcesOf(directions_);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(free.Size());
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     gradient -= InnerProducts(forces.middleCols(free.Size() * k, free.Size()),
@@ -365,18 +350,27 @@ void ReducedDescent::Refine() {
 
 void ReducedDescent::Finish(const Eigen::VectorXd& x) {
   adjoint_.resize(0, 0);
-  Eigen::MatrixXd sensitivities =
-      reduced_.DisplacementSensitivities(directions_);
-  const Eigen::MatrixXd forces = -ForcesOfVariables();
-  const Eigen::VectorXd energies = sensitivities.cwiseProduct(forces)
-                                       .colwise()
-                                       .sum()
-                                       .cwiseMax(0)
-                                       .cwiseSqrt();
-  // Where that takes too long, the misfit solves there when it is asked.
-  if (SolveNear(forces, kSensitivityAccuracy * energies, sensitivities)) {
-    misfit_.Place(x, displacement_, sensitivities);
+  const Eigen::Index n = directions_.cols();
+  Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
+  // Cycles take as long for each variable alone, and need less memory.
+  const Eigen::Index at_a_time = misfit_.SmallStrainModel().IsRefined() ? 1 : n;
+  for (Eigen::Index i = 0; i < n; i += at_a_time) {
+    const Eigen::MatrixXd directions = directions_.middleCols(i, at_a_time);
+    Eigen::MatrixXd columns = reduced_.DisplacementSensitivities(directions);
+    Eigen::MatrixXd forces = -ForcesOf(directions);
+    const Eigen::VectorXd energies =
+        columns.cwiseProduct(forces).colwise().sum().cwiseMax(0).cwiseSqrt();
+    // Where that takes too long, the misfit solves there when it is asked.
+    if (!SolveNear(std::move(forces), kSensitivityAccuracy * energies,
+                   columns)) {
+      return;
+    }
+    for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
+      sensitivities.middleCols(n * k + i, at_a_time) =
+          columns.middleCols(at_a_time * k, at_a_time);
+    }
   }
+  misfit_.Place(x, displacement_, sensitivities);
 }
 
 // From a pole on.

@@ -221,6 +221,13 @@ bool DisplacementMisfit::Factorize(const Eigen::VectorXd& x) {
   return (!placed_ && IsAt(x)) || MoveModelTo(x);
 }
 
+void DisplacementMisfit::ForgetSolution() {
+  small_strain_model_->ForgetSolution();
+  if (!placed_) {
+    x_.resize(0);
+  }
+}
+
 void DisplacementMisfit::Place(const Eigen::VectorXd& x,
                                const Eigen::MatrixXd& displacement,
                                const Eigen::MatrixXd& sensitivities) {

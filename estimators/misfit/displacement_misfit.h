@@ -117,6 +117,10 @@ class DisplacementMisfit {
   void Place(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
              const Eigen::MatrixXd& sensitivities);
 
+  /// Gives back the memory of the last solution, but for what was placed.  The
+  /// factor stays.  Precondition: small strains.
+  void ForgetSolution();
+
   /// Returns u and, side by side for each load case, du/dx at x as Place takes
   /// them, and solves only where it has to.  False when the stiffness is
   /// singular there.

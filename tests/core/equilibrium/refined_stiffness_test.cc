@@ -169,6 +169,14 @@ TEST_P(RefinedEquilibrium, BeginsWithTheLastSolution) {
   const int warm = iterations(changed);
   EXPECT_GT(warm, 0);
   EXPECT_LT(warm, 0.8 * cold);
+  const Eigen::MatrixXd displacement = equilibrium.Displacement();
+  const Eigen::MatrixXd slopes = equilibrium.Sensitivities(directions);
+  equilibrium.ForgetSolution();
+  EXPECT_GT(iterations(changed), warm);
+  ExpectSame(equilibrium.Displacement(), displacement);
+  equilibrium.ForgetSolution();
+  equilibrium.BeginWith(displacement, slopes);
+  EXPECT_EQ(iterations(changed), 0);
 }
 
 TEST_P(RefinedEquilibrium, RefusesAStiffnessThatIsNotPositive) {
