@@ -256,6 +256,7 @@ int RunOne(const std::vector<std::string>& arguments,
            EstimatorOptions options, double read_seconds,
            Clock::time_point start, const Page* page,
            std::optional<Progress>& progress) {
+  RefuseOnOtherRanks();
   Scene& scene = reading.scene;
   std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(Sources(arguments), scene, reading.notices);

@@ -9,9 +9,10 @@
 namespace elastimate {
 namespace {
 
-// Appends values to bytes or, where it was made of bytes, takes the values from
-// these, in the same order.  The names of all fields of a struct are listed
-// once, so that a struct which gets another field does not compile.
+// Writes values to bytes.  If it was constructed from bytes, it reads the
+// values from them in the same order.  The names of all fields of a struct are
+// listed once, so that this file does not compile once a struct gets another
+// field.
 class FitArchive {
  public:
   FitArchive() = default;

@@ -148,15 +148,17 @@ int Run(const std::vector<std::string>& arguments) {
   return RunCommand(arguments[0], {arguments.begin() + 1, arguments.end()});
 }
 
-// Runs the command on another rank than 0, as far as its frames.
+// Runs the command on a rank other than 0, until it has sent its frames to rank
+// 0.
 void RunForFrames(const std::vector<std::string>& arguments) {
   try {
-    if (Run(arguments) != kFramesSent) {
-      throw std::invalid_argument(
-          "the command is not that of rank 0; give all ranks the same");
+    if (arguments.empty() ||
+        (arguments[0] != "estimate" && arguments[0] != "report") ||
+        Run(arguments) != kFramesSent) {
+      RefuseOnOtherRanks();
     }
   } catch (const std::invalid_argument& error) {
-    SendReadiness(error.what());
+    SendReadiness(0, error.what());
   }
 }
 

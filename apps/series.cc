@@ -134,18 +134,18 @@ std::string ReceiveText(const Ranks& ranks, int from) {
 // Throws on rank 0 where another rank has other frames, or none.
 void CheckFramesOfRanks(const Ranks& ranks, std::size_t num_frames) {
   if (ranks.Rank() > 0) {
-    std::size_t num_frames_of_rank_0 = 0;
-    ranks.Receive(0, &num_frames_of_rank_0, sizeof(num_frames_of_rank_0));
-    if (num_frames != num_frames_of_rank_0) {
-      throw std::invalid_argument(
-          "the number of frames is not that of rank 0; give all ranks the same "
-          "files");
-    }
-    return SendReadiness("");
+    return SendReadiness(num_frames, "");
   }
   for (int rank = 1; rank < ranks.Size(); ++rank) {
-    ranks.Send(rank, &num_frames, sizeof(num_frames));
-    const std::string why_not = ReceiveText(ranks, rank);
+    ranks.Wait(rank);
+    std::size_t num_frames_of_rank = 0;
+    ranks.Receive(rank, &num_frames_of_rank, sizeof(num_frames_of_rank));
+    std::string why_not = ReceiveText(ranks, rank);
+    if (why_not.empty() && num_frames_of_rank != num_frames) {
+      why_not =
+          "the number of frames is not that of rank 0; give all ranks the same "
+          "files";
+    }
     if (!why_not.empty()) {
       throw std::invalid_argument("rank " + std::to_string(rank) + ": " +
                                   why_not);
@@ -154,8 +154,8 @@ void CheckFramesOfRanks(const Ranks& ranks, std::size_t num_frames) {
 }
 
 // Fits the frames of a series in groups.  Each frame may start from the one
-// before it in its group.  Threads and ranks take whole groups, so that no
-// estimate depends on how many of them there are.
+// before it in its group.  Threads and ranks take whole groups, so that no fit
+// starts elsewhere where there are more of them.
 class SeriesFit {
  public:
   SeriesFit(const Estimator& estimator, const Scene& scene,
@@ -166,7 +166,8 @@ class SeriesFit {
         series_(series),
         options_(options),
         progress_(progress),
-        fits_(series.files.size()) {}
+        fits_(series.files.size()),
+        frames_of_group_(std::clamp<std::size_t>(fits_.size() / 4, 1, 4)) {}
 
   // Returns the fits on rank 0, and none on other ranks.
   std::vector<FrameFit> Run() {
@@ -174,6 +175,7 @@ class SeriesFit {
     // much memory.
     constexpr Eigen::Index kMostNodes = 20000;
     if (scene_.mesh.NumNodes() > kMostNodes) {
+      RefuseOnOtherRanks();
       frames_of_group_ = fits_.size();
       FitOnThreads(0, 1);
     } else if (const Ranks* const ranks = RanksOfSolves()) {
@@ -253,8 +255,9 @@ class SeriesFit {
   const EstimatorOptions& options_;
   const std::function<void(const std::string&)>& progress_;
   std::vector<FrameFit> fits_;
-  // Short groups divide evenly, and long ones save steps of iterations.
-  std::size_t frames_of_group_ = 4;
+  // Short groups spread evenly over threads.  Long ones let more frames start
+  // from the one before.
+  std::size_t frames_of_group_;
   std::size_t num_own_ = 0;  // The frames of this rank.
   std::size_t num_started_ = 0;
   // A reader keeps what the frames have in common.
@@ -271,8 +274,19 @@ LoadCase ReadFrame(const FrameSeries& series, std::size_t i) {
   return frame;
 }
 
-void SendReadiness(const std::string& why_not) {
-  SendAll(*RanksOfSolves(), 0, why_not);
+void SendReadiness(std::size_t num_frames, const std::string& why_not) {
+  const Ranks& ranks = *RanksOfSolves();
+  ranks.Send(0, &num_frames, sizeof(num_frames));
+  SendAll(ranks, 0, why_not);
+}
+
+void RefuseOnOtherRanks() {
+  const Ranks* const ranks = RanksOfSolves();
+  if (ranks != nullptr && ranks->Rank() > 0) {
+    throw std::invalid_argument(
+        "this rank does not estimate frames as rank 0 does; give all ranks the "
+        "same command and the same files");
+  }
 }
 
 std::vector<FrameEstimate> EstimateFrames(

@@ -16,13 +16,15 @@ namespace elastimate {
 /// Throws as FrameSeries::read does.
 LoadCase ReadFrame(const FrameSeries& series, std::size_t i);
 
-/// Returns the estimate of each frame.  Each thread (ForBlocks) of each rank
-/// estimates consecutive frames with an estimator that it prepares once.  On
-/// large meshes, one thread of rank 0 estimates all, and ranks share the
-/// solves. For a frame that cannot be read or used it says why. `scene` is that
-/// of the frames, at the given standard deviation of noise, if any.  `progress`
-/// is told what is done next.  Throws std::invalid_argument where the estimator
-/// does not take such frames.
+/// Returns the estimate of each frame.  Frames form groups of up to four.  Each
+/// thread (ForBlocks) of each rank estimates whole groups with an estimator
+/// that it prepares once, and each frame starts where the one before it in its
+/// group ended.  On large meshes, one thread of rank 0 estimates all, and ranks
+/// share the solves.  For a frame that cannot be read or used it says why.
+/// `scene` is that of the frames, at the given standard deviation of noise, if
+/// any.  `progress` is told what is done next.  Throws std::invalid_argument
+/// where the estimator does not take such frames and, on rank 0, where another
+/// rank has other frames or none.
 ///
 /// While rank 0 is in this function, the other ranks call it as well
 /// (WorkApart), with arguments that they have read themselves.  They send rank
@@ -32,12 +34,15 @@ std::vector<FrameEstimate> EstimateFrames(
     const EstimatorOptions& options,
     const std::function<void(const std::string&)>& progress);
 
-/// What a command returns on another rank, in place of an exit code, once that
-/// has sent its estimates.
+/// What a command returns instead of an exit code on a rank other than 0, after
+/// it has sent its estimates.
 constexpr int kFramesSent = -1;
-/// Tells rank 0 that another rank is about to estimate frames, or in a
-/// sentence, which rank 0 then throws, why it cannot.
-void SendReadiness(const std::string& why_not);
+/// Tells rank 0 how many frames this rank has.  Where it cannot estimate them,
+/// `why_not` is the reason as a sentence, which rank 0 then throws.
+void SendReadiness(std::size_t num_frames, const std::string& why_not);
+/// Throws std::invalid_argument on a rank other than 0, for what rank 0 alone
+/// may do.
+void RefuseOnOtherRanks();
 
 }  // namespace elastimate
 

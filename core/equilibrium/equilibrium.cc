@@ -162,7 +162,7 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
     return !displacement_.hasNaN();
   }
   const Eigen::MatrixXd start =
-      displacement_.size() > 0
+      displacement_.size() > 0 && support_response_.size() > 0
           ? Eigen::MatrixXd(displacement_ - support_response_)
           : Eigen::MatrixXd();
   SolveForSupports(scaled);

@@ -83,10 +83,12 @@ class Equilibrium : public ForwardModel {
   /// those of the last call and neither moduli nor supports have changed since,
   /// because searches within bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
-  /// Gives back the memory of the last displacement and sensitivities.
+  /// Gives back the memory of the last displacement and sensitivities.  Solve
+  /// has to be called before anything that describes a solution.
   void ForgetSolution() { BeginWith({}, {}); }
   using ForwardModel::BeginWith;
-  /// Begins the iterations of the next Solve and Sensitivities with these.
+  /// Begins the iterations of the next Solve and Sensitivities with these,
+  /// which are as Displacement and Sensitivities return them, or empty.
   void BeginWith(Eigen::MatrixXd displacement, Eigen::MatrixXd sensitivities) {
     directions_.resize(0, 0);
     displacement_ = std::move(displacement);

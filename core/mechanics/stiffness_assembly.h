@@ -36,8 +36,8 @@ class StiffnessAssembly {
   Eigen::VectorXd ValuesOf(const Eigen::MatrixXd& blocks) const;
 
   const NodeGraph& Graph() const { return graph_; }
-  /// Returns the pattern, which is made when it is first asked for: multigrid
-  /// does without, and it takes as much memory as the values.
+  /// Returns the pattern, which is made when it is first asked for.  Multigrid
+  /// does not need it, and it takes as much memory as the values.
   const SymmetricPattern& Pattern() const;
   const Eigen::VectorXd& H() const { return h_; }
   const Eigen::VectorXd& J() const { return j_; }
@@ -58,8 +58,9 @@ class StiffnessAssembly {
   bool HasBases() const { return h_.size() > 0; }
 
  private:
-  /// Visits the values in their order: visit(node, k, component, i) for that of
-  /// a component of a node and component i of the row of pair k.
+  /// Calls visit(node, k, component, i) for each value, in order.  Its column
+  /// is `component` of `node`, and its row is component i of the row node of
+  /// pair k.
   template <class Visitor>
   void VisitValues(const Visitor& visit) const;
   /// Returns the values of a H + b J for the coefficients a, b.

@@ -189,7 +189,7 @@ class Iterations {
     return rz <= most * result_.smallest_eigenvalue;
   }
 
-  // Takes memory for the solution once a column is done.
+  // Allocates the solution as late as possible, when the first column is done.
   void MakeSolution() {
     if (result_.solution.cols() == 0) {
       result_.solution.setZero(x_.rows(), num_columns_);

@@ -132,7 +132,12 @@ void WorkApart(const std::function<void()>& work) {
     return work();
   }
   are_apart = true;
-  WorkApart(*ranks_of_solves, work);
+  try {
+    WorkApart(*ranks_of_solves, work);
+  } catch (...) {
+    are_apart = false;
+    throw;
+  }
   are_apart = false;
 }
 

@@ -36,8 +36,8 @@ inline bool HasMultigrid() { return WhyNoMultigrid().empty(); }
 /// all call this function once, while PETSc runs.  On rank 0 it returns true at
 /// once: this rank goes on alone, and has the others take part in each set-up
 /// and solve.  On these it returns false once rank 0 calls EndSharedSolves or
-/// exits.  Where there is one process, it returns true and does nothing.  The
-/// other ranks call `apart` each time when rank 0 calls WorkApart.
+/// exits.  Where there is one process, it returns true and does nothing.  Each
+/// time rank 0 calls WorkApart, the other ranks call `apart`.
 [[nodiscard]] bool ShareSolves(const std::function<void()>& apart = [] {});
 /// Lets the other processes go on.  Rank 0 calls it before PETSc ends, when no
 /// solver of MakeMultigrid is left.
@@ -50,9 +50,10 @@ void EndSharedSolves();
 [[nodiscard]] const Ranks* RanksOfSolves();
 /// Does `work` on rank 0 while each other rank does what it gave ShareSolves.
 /// Meanwhile each process solves by itself.  Within that, another rank may call
-/// this function as well, which then does `work`.  An exception that leaves
-/// `work` on rank 0, or ends another rank, ends all of them.  Preconditions:
-/// RanksOfSolves() is not null, and no solver of MakeMultigrid is left.
+/// this function as well, which then does `work`.  After an exception that
+/// leaves `work`, all ranks end when this one exits or solves again.
+/// Preconditions: RanksOfSolves() is not null, and no solver of MakeMultigrid
+/// is left.
 void WorkApart(const std::function<void()>& work);
 
 /// Returns an AlgebraicMultigrid whose coarse spaces PETSc finds; its Factorize

@@ -30,7 +30,8 @@ class RowsOfNodes : public MultigridRows {
     are_simplices = IsSimplex(mesh.kind);
   }
 
-  // Once the matrix is there, the values may be taken away.
+  // Refers to the values, which may be emptied once Factorize has returned
+  // true.
   void Take(const Eigen::VectorXd& values) {
     values_ = &values;
     FreeMatrix();
@@ -41,6 +42,7 @@ class RowsOfNodes : public MultigridRows {
     }
     return matrix_;
   }
+  // Without the values, the matrix could not be made again, so it stays.
   void FreeMatrix() override {
     if (values_->size() > 0) {
       matrix_ = {};

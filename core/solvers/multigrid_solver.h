@@ -34,7 +34,7 @@ namespace elastimate {
 void ServeSolves(const AlgebraicMultigrid::FindSpaces& find_spaces,
                  const Ranks& ranks, const std::function<void()>& apart);
 /// Does `work` on rank 0 while each of the others does what it gave
-/// ServeSolves.  None of it may solve together with other ranks.
+/// ServeSolves.  Meanwhile no rank may use a solver that several ranks share.
 void WorkApart(const Ranks& ranks, const std::function<void()>& work);
 /// Lets the other ranks return from ServeSolves.  Each rank calls it before it
 /// exits: within a step that all take together, it ends all of them.

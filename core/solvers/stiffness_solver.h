@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -145,7 +146,7 @@ class StiffnessSolver {
   };
 
   explicit StiffnessSolver(std::shared_ptr<Shared> shared);
-  /// Whether MakeValues makes the last matrix.
+  /// Tells whether MakeValues can make the last matrix again.
   bool CanMakeValues() const {
     return make_blocks_ || !std::isnan(poisson_ratio_);
   }

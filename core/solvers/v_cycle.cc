@@ -102,8 +102,8 @@ Eigen::MatrixXd CycleFrom(const std::vector<CycleSpace>& spaces,
   }
   const CycleSpace& space = spaces[num_spaces - 1];
   Eigen::MatrixXd x = Smooth(space, force);
-  // What is left of the force is forgotten between its two uses, since columns
-  // of a fine space need much memory.
+  // The rest of the force is computed twice rather than kept, because a column
+  // of a fine space needs much memory.
   Eigen::MatrixXd coarse = space.restrict(Rest(space, force, x));
   coarse = CycleFrom(spaces, num_spaces - 1, solve_coarsest, coarse);
   x += space.interpolate(coarse);

@@ -27,7 +27,8 @@ class Preparation {
   /// Whether Run takes other load cases altogether: what it keeps is of the
   /// specimen alone, if it keeps anything.
   virtual bool TakesOtherLoadCases() const { return false; }
-  /// Has the next Run start as the first one did.
+  /// Has the next Run start as the first one did.  Does nothing where no
+  /// estimate starts from an earlier one.
   virtual void ForgetStart() {}
 };
 

@@ -114,7 +114,8 @@ void Complete(const Scene& scene, const EstimatorOptions& options,
   WarnOfFlatFacets(scene, fit.displacement, fit.estimate);
 }
 
-// Keeps the reduced model with its certificate, which needs no start.
+// Keeps the reduced model with its certificate.  It needs no start, but each
+// measurement may enlarge it.
 class CertifiedPreparation : public Preparation {
  public:
   explicit CertifiedPreparation(const EstimatorOptions& options)

@@ -360,7 +360,8 @@ void ReducedDescent::Finish(const Eigen::VectorXd& x) {
     Eigen::MatrixXd forces = -ForcesOf(directions);
     const Eigen::VectorXd energies =
         columns.cwiseProduct(forces).colwise().sum().cwiseMax(0).cwiseSqrt();
-    // Where that takes too long, the misfit solves there when it is asked.
+    // Where that takes too many iterations, the misfit solves when it is next
+    // evaluated there.
     if (!SolveNear(std::move(forces), kSensitivityAccuracy * energies,
                    columns)) {
       return;

@@ -115,7 +115,9 @@ class Refinement {
 
   Chain FitQuadratic(SupportEnds ends,
                      const std::optional<Eigen::VectorXd>& start);
-  /// Takes the nodes where supports may end as free and as held.
+  /// Fits with the nodes where supports may end free, and finds or fits the
+  /// minimum with them held.  Returns the better fit, to be moved to the mean
+  /// of both.
   Chain FitOverSupportEnds(const std::optional<Eigen::VectorXd>& start);
   /// Looks for a better minimum than the one that coarser elements led to.
   void LookForBetterMinimum(const SpaceFit& coarser, SpaceFit& fit) const;
@@ -146,7 +148,8 @@ class Refinement {
     return space;
   }
   /// Fits again in the same space, to the measurement of a scene less some
-  /// outliers.  A large scene is there only while it is needed.
+  /// outliers.  `scene` makes the scene when it is called, so that a large one
+  /// is in memory only meanwhile.
   template <class MakeScene>
   void Refit(const MakeScene& scene, const std::vector<Outlier>& left_out,
              const std::optional<Eigen::VectorXd>& start,
@@ -214,7 +217,8 @@ void Refinement::LeaveOut(const MaterialFit& of_all, SupportEnds ends,
                           const std::vector<const Scene*>& coarser,
                           Chain& chain) {
   const auto quadratic = [&] { return WithQuadraticElements(scene_, ends); };
-  // Where motions are unknown, each fit replaces the scene.
+  // Where motions are unknown, each fit is a new SpaceFit, so that the search
+  // needs a scene that outlives them.
   const Scene copy = HasUnknownMotion(scene_) ? quadratic() : Scene();
   bool is_refitted = false;
   const InlierFit inliers = LeaveOutliersOut(
@@ -373,7 +377,8 @@ Refinement::Chain Refinement::FitOverSupportEnds(
     return free;
   }
   const std::optional<Eigen::VectorXd> change =
-      free.divided ? std::nullopt : free.quadratic->ChangeByHolding(in_doubt);
+      free.divided ? std::nullopt
+                   : free.quadratic->ChangeByHolding(in_doubt, free.work);
   if (change && free.change) {
     free.change->by_supports = *change / 2;
     return free;

@@ -35,9 +35,9 @@ enum class MisfitCurvature { kConsidered, kIgnored };
 /// Where a support ends within quadratic elements (Supports::in_doubt), the
 /// second and third fit are made with all of the nodes in doubt held and with
 /// all of them free.  The estimate is the mean, and half of the difference an
-/// error.  Where the mesh is not divided and free nodes explain more, the
-/// minimum with held nodes is found by a step from the other one, for a fit
-/// would take as long again and as much memory (SpaceFit::ChangeByHolding).
+/// error.  If the mesh is not divided, free nodes explain more and the step is
+/// short, one solution and a linear step find the minimum with held nodes
+/// (SpaceFit::ChangeByHolding).  A second fit would double time and memory.
 ///
 /// The estimate is refused with FindingCode::kComputedByLinearElements where
 /// linear elements explain the measurement so much better than quadratic ones

@@ -68,9 +68,9 @@ DisplacementMisfit::Weights WeightsAtMinimum(
   return weights;
 }
 
-// Whether a model that is linear at x has an error of a fifth of the step at
-// most: logarithms of moduli change by a fifth, and ratios go a fifth of the
-// way to a bound.
+// Whether the step is so short that the linear model can be trusted, to about a
+// fifth of the step.  Logarithms of moduli may change by 0.2, and ratios may go
+// a fifth of the way to a bound.
 bool IsShort(const Eigen::VectorXd& step, const Eigen::VectorXd& x,
              const std::vector<Bounds>& bounds) {
   constexpr double kLongest = 0.2;
@@ -431,7 +431,7 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
 }
 
 std::optional<Eigen::VectorXd> SpaceFit::ChangeByHolding(
-    const std::vector<HeldComponent>& components) {
+    const std::vector<HeldComponent>& components, Work& work) {
   const BoundedMinimum& minimum = *fit_.minimum;
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
@@ -441,7 +441,7 @@ std::optional<Eigen::VectorXd> SpaceFit::ChangeByHolding(
     return std::nullopt;
   }
   const std::optional<Eigen::MatrixXd> displacement =
-      DisplacementWithHeld(components);
+      DisplacementWithHeld(components, work);
   if (!displacement) {
     return std::nullopt;
   }
@@ -460,7 +460,7 @@ std::optional<Eigen::VectorXd> SpaceFit::ChangeByHolding(
 }
 
 std::optional<Eigen::MatrixXd> SpaceFit::DisplacementWithHeld(
-    const std::vector<HeldComponent>& components) {
+    const std::vector<HeldComponent>& components, Work& work) {
   constexpr double kAccuracy = 1e-5;
   constexpr int kMostIterations = 200;
   Equilibrium& model = misfit_.SmallStrainModel();
@@ -479,7 +479,7 @@ std::optional<Eigen::MatrixXd> SpaceFit::DisplacementWithHeld(
   const std::optional<int> iterations =
       SolveNearby(moduli, model.Load(), kAccuracy * energies.cwiseSqrt(),
                   kMostIterations, model, displacement, rows);
-  fit_.estimate.work.element_passes += 2 + iterations.value_or(kMostIterations);
+  work.element_passes += 2 + iterations.value_or(kMostIterations);
   return iterations ? std::optional<Eigen::MatrixXd>(displacement)
                     : std::nullopt;
 }

@@ -85,14 +85,15 @@ class SpaceFit {
   /// minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
-  /// Returns by how much the minimum moves where these components are held as
-  /// well: a solution, and a step of the model that is linear at the minimum.
-  /// Empty where that explains more of the displacements, so that it is to be
-  /// fitted, where the step is long or bounds are in its way, and where systems
-  /// are solved by factors or supports differ between load cases.
-  /// Precondition: there is a minimum.
+  /// Returns how far the minimum moves if these components are held as well.
+  /// Costs one solution at the minimum, which is added to `work`, and a step of
+  /// the model linearised there.  Empty if a fit is needed instead: because
+  /// holding them explains the displacements better, because the step is long
+  /// or meets a bound, or because iterations do not converge.  Empty also at
+  /// large strains, if systems are solved by factors, and if supports differ
+  /// between load cases.  Precondition: there is a minimum.
   std::optional<Eigen::VectorXd> ChangeByHolding(
-      const std::vector<HeldComponent>& components);
+      const std::vector<HeldComponent>& components, Work& work);
 
   /// Takes the measurement of another scene of the same specimen, at the same
   /// nodes or at others, less some outliers.  Minimize starts anew then.
@@ -138,7 +139,7 @@ class SpaceFit {
   /// Returns the displacement at the minimum where these components are held as
   /// well; empty where iterations do not converge.
   std::optional<Eigen::MatrixXd> DisplacementWithHeld(
-      const std::vector<HeldComponent>& components);
+      const std::vector<HeldComponent>& components, Work& work);
   Work WorkDone();
   const std::string& SolverNotice();
 

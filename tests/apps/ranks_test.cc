@@ -225,7 +225,10 @@ TEST_F(SeriesOfRanks, EndsWhereOneHasOtherFiles) {
   RefuseOther("estimate none.json", "none.json: ");
   RefuseOther("estimate fewer.json --estimator=reduced-fe",
               "the number of frames is not that of");
-  RefuseOther("check fewer.json", "the command is not that of rank 0");
+  // Neither writes anything.
+  RefuseOther("check fewer.json", "this rank does not estimate frames");
+  WriteScene("single", "");
+  RefuseOther("estimate single.json --estimator=reduced-fe --json=b.json", "");
 }
 
 }  // namespace
