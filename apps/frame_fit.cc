@@ -9,6 +9,12 @@
 namespace elastimate {
 namespace {
 
+// Passes all fields of a struct, whose names stand in the order of its
+// declaration.
+#define ELASTIMATE_PASS_FIELDS(value, ...) \
+  auto& [__VA_ARGS__] = value;             \
+  All(__VA_ARGS__)
+
 // Writes values to bytes.  If it was constructed from bytes, it reads the
 // values from them in the same order.  The names of all fields of a struct are
 // listed once, so that this file does not compile once a struct gets another
@@ -78,106 +84,86 @@ class FitArchive {
   }
 
   void Pass(Finding& finding) {
-    auto& [code, severity, text, advice] = finding;
-    All(code, severity, text, advice);
+    ELASTIMATE_PASS_FIELDS(finding, code, severity, text, advice);
   }
   void Pass(ParameterEstimate& parameter) {
-    auto& [name, symbol, regions, is_modulus, is_known, beside, limits, value,
-           standard_error, interval] = parameter;
-    All(name, symbol, regions, is_modulus, is_known, beside, limits, value,
-        standard_error, interval);
+    ELASTIMATE_PASS_FIELDS(parameter, name, symbol, regions, is_modulus,
+                           is_known, beside, limits, value, standard_error,
+                           interval);
   }
   void Pass(StiffnessEstimate& stiffness) {
-    auto& [regions, value, standard_error] = stiffness;
-    All(regions, value, standard_error);
+    ELASTIMATE_PASS_FIELDS(stiffness, regions, value, standard_error);
   }
   void Pass(AxisEstimate& axis) {
-    auto& [regions, first_rotation, direction, standard_error, anisotropy] =
-        axis;
-    All(regions, first_rotation, direction, standard_error, anisotropy);
+    ELASTIMATE_PASS_FIELDS(axis, regions, first_rotation, direction,
+                           standard_error, anisotropy);
   }
   void Pass(ErrorBudget& budget) {
-    auto& [noise, bias, model, outliers, discretization, curvature, law,
-           kinematics, section, prior] = budget;
-    All(noise, bias, model, outliers, discretization, curvature, law,
-        kinematics, section, prior);
+    ELASTIMATE_PASS_FIELDS(budget, noise, bias, model, outliers, discretization,
+                           curvature, law, kinematics, section, prior);
   }
   void Pass(Camera& camera) {
-    auto& [rotation, translation] = camera;
-    All(rotation, translation);
+    ELASTIMATE_PASS_FIELDS(camera, rotation, translation);
   }
   void Pass(MaterialEstimate& material) {
-    auto& [regions, determination, energy_share, residual_chi_square,
-           residual_correlation, largest_differences] = material;
-    All(regions, determination, energy_share, residual_chi_square,
-        residual_correlation, largest_differences);
+    ELASTIMATE_PASS_FIELDS(material, regions, determination, energy_share,
+                           residual_chi_square, residual_correlation,
+                           largest_differences);
   }
   void Pass(LawComparison& comparison) {
-    auto& [law, num_parameters, chi_square, criterion] = comparison;
-    All(law, num_parameters, chi_square, criterion);
+    ELASTIMATE_PASS_FIELDS(comparison, law, num_parameters, chi_square,
+                           criterion);
   }
   void Pass(MapEstimate& map) {
-    auto& [status, findings, verdict, field_log_evidence, region_log_evidence,
-           supported_parameters, youngs_modulus, youngs_modulus_standard_error,
-           resolution_length, regions, boundary, region_of_element,
-           mean_youngs_modulus, poisson_ratio, covariance, mesh_covariance,
-           noise_sd, displacement_residual, fitted_displacement, cameras,
-           is_scale_known, element_order, work] = map;
-    All(status, findings, verdict, field_log_evidence, region_log_evidence,
+    ELASTIMATE_PASS_FIELDS(
+        map, status, findings, verdict, field_log_evidence, region_log_evidence,
         supported_parameters, youngs_modulus, youngs_modulus_standard_error,
         resolution_length, regions, boundary, region_of_element,
         mean_youngs_modulus, poisson_ratio, covariance, mesh_covariance,
         noise_sd, displacement_residual, fitted_displacement, cameras,
         is_scale_known, element_order, work);
   }
+  void Pass(RegionMerge& merge) {
+    ELASTIMATE_PASS_FIELDS(merge, first, second, chi_square, limit, is_taken);
+  }
+  void Pass(Trend& trend) {
+    ELASTIMATE_PASS_FIELDS(trend, is_over_load, change, standard_error,
+                           p_value);
+  }
+  void Pass(SeriesSummary& series) {
+    ELASTIMATE_PASS_FIELDS(series, num_frames, num_used, loads, trend);
+  }
   void Pass(Rung& rung) {
-    auto& [estimator, element_order, status, elasticity, work, seconds,
-           decision] = rung;
-    All(estimator, element_order, status, elasticity, work, seconds, decision);
+    ELASTIMATE_PASS_FIELDS(rung, estimator, element_order, status, elasticity,
+                           work, seconds, decision);
   }
-  void Pass(StageTime& time) {
-    auto& [stage, seconds] = time;
-    All(stage, seconds);
-  }
+  void Pass(StageTime& time) { ELASTIMATE_PASS_FIELDS(time, stage, seconds); }
   void Pass(Estimate& estimate) {
-    // No frame has merges or a series.
-    auto& [estimator, status, element_order, mesh_divisions, is_model_in_doubt,
-           message, elasticity, covariance, findings, parameters,
-           parameter_covariance, stiffnesses, axes, shear_modulus, error_budget,
-           deformation, poisson_ratio_interval, why_no_standard_error, noise_sd,
-           noise_degrees_of_freedom, force_residual, displacement_residual,
-           identifiability_angle, noise_attenuation, residual_correlation,
-           correlation_length, discretization_error,
-           poisson_ratio_discretization_error, discretization_correction,
-           uncorrected_parameters, outliers, fitted_displacement, cameras,
-           active_bounds, materials, combinations, merges, laws,
-           large_strain_law, map, series, rungs, work, stages, seconds] =
-        estimate;
-    All(estimator, status, element_order, mesh_divisions, is_model_in_doubt,
-        message, elasticity, covariance, findings, parameters,
-        parameter_covariance, stiffnesses, axes, shear_modulus, error_budget,
-        deformation, poisson_ratio_interval, why_no_standard_error, noise_sd,
-        noise_degrees_of_freedom, force_residual, displacement_residual,
-        identifiability_angle, noise_attenuation, residual_correlation,
-        correlation_length, discretization_error,
-        poisson_ratio_discretization_error, discretization_correction,
-        uncorrected_parameters, outliers, fitted_displacement, cameras,
-        active_bounds, materials, combinations, laws, large_strain_law, map,
-        rungs, work, stages, seconds);
+    ELASTIMATE_PASS_FIELDS(
+        estimate, estimator, status, element_order, mesh_divisions,
+        is_model_in_doubt, message, elasticity, covariance, findings,
+        parameters, parameter_covariance, stiffnesses, axes, shear_modulus,
+        error_budget, deformation, poisson_ratio_interval,
+        why_no_standard_error, noise_sd, noise_degrees_of_freedom,
+        force_residual, displacement_residual, identifiability_angle,
+        noise_attenuation, residual_correlation, correlation_length,
+        discretization_error, poisson_ratio_discretization_error,
+        discretization_correction, uncorrected_parameters, outliers,
+        fitted_displacement, cameras, active_bounds, materials, combinations,
+        merges, laws, large_strain_law, map, series, rungs, work, stages,
+        seconds);
   }
   void Pass(FrameEstimate& frame) {
-    auto& [load, estimate, likeness, num_alike] = frame;
-    All(load, estimate, likeness, num_alike);
+    ELASTIMATE_PASS_FIELDS(frame, load, estimate, likeness, num_alike);
   }
-  void Pass(FrameFit& fit) {
-    auto& [frame, residual] = fit;
-    All(frame, residual);
-  }
+  void Pass(FrameFit& fit) { ELASTIMATE_PASS_FIELDS(fit, frame, residual); }
 
   std::string bytes_;
   bool is_reading_ = false;
   std::size_t place_ = 0;
 };
+
+#undef ELASTIMATE_PASS_FIELDS
 
 }  // namespace
 

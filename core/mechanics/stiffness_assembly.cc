@@ -3,6 +3,13 @@
 #include "elastimate/core/mechanics/law_products.h"
 
 namespace elastimate {
+namespace {
+
+bool HasBit(unsigned bits, int place) {
+  return (bits >> unsigned(place) & 1U) != 0;
+}
+
+}  // namespace
 
 StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
                                      const DegreesOfFreedom& degrees_of_freedom)
@@ -42,13 +49,10 @@ void StiffnessAssembly::ForgetBases() {
 
 template <class Visitor>
 void StiffnessAssembly::VisitValues(const Visitor& visit) const {
-  const auto is_free = [this](Eigen::Index node, int component) {
-    return (free_components_[node] >> unsigned(component) & 1U) != 0;
-  };
   for (Eigen::Index node = 0; node + 1 < Eigen::Index(graph_.start.size());
        ++node) {
     for (int component = 0; component < dimension_; ++component) {
-      if (!is_free(node, component)) {
+      if (!HasBit(free_components_[node], component)) {
         continue;
       }
       for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1];
@@ -56,7 +60,7 @@ void StiffnessAssembly::VisitValues(const Visitor& visit) const {
         // Above the diagonal there is nothing to store.
         const int first = graph_.row[k] == node ? component : 0;
         for (int i = first; i < dimension_; ++i) {
-          if (is_free(graph_.row[k], i)) {
+          if (HasBit(free_components_[graph_.row[k]], i)) {
             visit(node, k, component, i);
           }
         }
@@ -72,8 +76,7 @@ const SymmetricPattern& StiffnessAssembly::Pattern() const {
   std::vector<std::int64_t> place(free_components_.size() * dimension_, -1);
   std::int64_t num_free = 0;
   for (std::size_t i = 0; i < place.size(); ++i) {
-    if ((free_components_[i / dimension_] >> unsigned(i % dimension_) & 1U) !=
-        0) {
+    if (HasBit(free_components_[i / dimension_], int(i % dimension_))) {
       place[i] = num_free++;
     }
   }

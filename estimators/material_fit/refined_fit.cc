@@ -138,7 +138,8 @@ class Refinement {
                                                 ? last->SolverOfCoarsest()
                                                 : nullptr);
     space->Misfit().SetNeighbours(neighbours_);
-    if (last != nullptr && last->Fit().displacement.size() > 0) {
+    if (space->Misfit().HasLargeStrains() && last != nullptr &&
+        last->Fit().displacement.size() > 0) {
       space->Misfit().Model().BeginWith(
           FinerNodes(last->OwnScene().mesh, space->OwnScene().mesh)
               .Interpolate(last->Fit().displacement));
