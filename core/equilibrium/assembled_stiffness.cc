@@ -46,9 +46,10 @@ bool AssembledStiffness::Factorize(const NestedStiffness& stiffness,
 void AssembledStiffness::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
   const NodeGraph& graph = Solver().Graph();
   const Eigen::Index d = blocks.rows();
+  const auto is_held = supports_.held.reshaped();
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index row, Eigen::Index column, double value) {
-    if (IsFree()(row) == 0) {
+    if (is_held(row)) {
       entries.emplace_back(row, column, value);
     }
   };
@@ -67,8 +68,8 @@ void AssembledStiffness::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
       }
     }
   }
-  held_rows_.resize(IsFree().size(), IsFree().size());
-  held_rows_.setFromTriplets(entries.begin(), entries.end());
+  rows_.resize(is_held.size(), is_held.size());
+  rows_.setFromTriplets(entries.begin(), entries.end());
 }
 
 }  // namespace elastimate

@@ -35,11 +35,11 @@ class AssembledStiffness : public SupportedStiffness {
 
   Eigen::MatrixXd HeldForces(
       const Eigen::MatrixXd& displacements) const override {
-    return held_rows_ * displacements;
+    return rows_ * displacements;
   }
   Eigen::MatrixXd HeldForcesTransposed(
       const Eigen::MatrixXd& held) const override {
-    return held_rows_.transpose() * held;
+    return rows_.transpose() * held;
   }
 
   const NodeGraph& GraphOfAssembled() const override {
@@ -61,7 +61,8 @@ class AssembledStiffness : public SupportedStiffness {
   const Supports& supports_;
   SolverKind kind_;
   mutable std::unique_ptr<StiffnessSolver> solver_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> held_rows_;
+  /// The rows of K, of which only the held ones have entries.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows_;
 };
 
 }  // namespace elastimate

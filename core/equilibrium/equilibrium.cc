@@ -205,13 +205,10 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   // less memory.
   const Eigen::Index at_a_time = IsRefined() ? 1 : n;
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
-    ++element_passes_;
-    const Eigen::MatrixXd forces =
-        Forces().Columns(displacement_.col(k)) * (directions / scale_);
     for (Eigen::Index i = 0; i < n; i += at_a_time) {
       auto columns = sensitivities_.middleCols(n * k + i, at_a_time);
       columns = -stiffness_[stiffness_of_case_[k]]->Solve(
-          forces.middleCols(i, at_a_time),
+          ForcesAlong(directions.middleCols(i, at_a_time) / scale_, k),
           has_start ? Eigen::MatrixXd(columns) : Eigen::MatrixXd());
     }
   }
@@ -219,8 +216,24 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   return sensitivities_;
 }
 
+Eigen::MatrixXd Equilibrium::ForcesAlong(const Eigen::MatrixXd& directions,
+                                         Eigen::Index k) {
+  ++element_passes_;
+  return directions.cols() == 1
+             ? Forces().Multiply(directions.col(0), displacement_.col(k))
+             : Eigen::MatrixXd(Forces().Columns(displacement_.col(k)) *
+                               directions);
+}
+
 Eigen::MatrixXd Equilibrium::SolveFor(const Eigen::MatrixXd& forces) {
   return SolveFrom({}, forces);
+}
+
+void Equilibrium::ClearHeld(Eigen::MatrixXd& columns) const {
+  const Eigen::Index n = columns.cols() / NumLoadCases();
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    stiffness_[stiffness_of_case_[k]]->ClearHeld(columns.middleCols(n * k, n));
+  }
 }
 
 Eigen::MatrixXd Equilibrium::Precondition(const Eigen::MatrixXd& forces) {

@@ -79,7 +79,8 @@ class Equilibrium : public ForwardModel {
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
   Eigen::MatrixXd SupportResponse() const { return OrZeros(support_response_); }
 
-  /// A pass and n solves for each load case; nothing where the directions are
+  /// A pass and n solves for each load case, n passes where iterations solve;
+  /// nothing where the directions are
   /// those of the last call and neither moduli nor supports have changed since,
   /// because searches within bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
@@ -104,7 +105,11 @@ class Equilibrium : public ForwardModel {
 
   /// Does what SolveFor does with the factor of the stiffness, or without one
   /// as far as one application of the preconditioner of the iterations does it.
+  /// Precondition: the held rows are zero (ClearHeld).
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& forces);
+  /// Sets the held rows of columns to zero, of which each load case has as many
+  /// as the others, side by side.
+  void ClearHeld(Eigen::MatrixXd& columns) const;
   /// Tells whether iterations solve the systems.
   bool IsRefined() const;
 
@@ -160,6 +165,10 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd SolveFrom(const Eigen::MatrixXd& start,
                             const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
+  /// Returns how the internal forces of the last displacement of load case `k`
+  /// change along these directions of the moduli: a pass.
+  Eigen::MatrixXd ForcesAlong(const Eigen::MatrixXd& directions,
+                              Eigen::Index k);
   /// Returns the values, or zeros where there are none.
   Eigen::MatrixXd OrZeros(const Eigen::MatrixXd& values) const {
     return values.size() > 0

@@ -45,12 +45,10 @@ void NestedStiffness::SetModuli(const Eigen::VectorXd& moduli) {
   for (std::size_t space = 1; space < NumSpaces(); ++space) {
     Finer& finer = finer_[space - 1];
     finer.diagonal_blocks = forces_[space].DiagonalBlocks(moduli);
-    const Eigen::VectorXd every =
-        Eigen::VectorXd::Ones(finer.diagonal_blocks.cols());
     int num_products = 0;
     finer.largest_eigenvalue = elastimate::LargestEigenvalue(
         [&](const Eigen::MatrixXd& x) { return Multiply(space, x); },
-        InverseBlocks(finer.diagonal_blocks, every), num_products);
+        InverseBlocks(finer.diagonal_blocks, {}), num_products);
     if (space + 1 == NumSpaces()) {
       num_passes_ += num_products;
     }

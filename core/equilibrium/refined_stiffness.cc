@@ -18,7 +18,7 @@ RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
         return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
       }) {
   for (std::size_t i = 0; i + 1 < supports.size(); ++i) {
-    is_free_of_coarser_.push_back(IsFreeOn(*supports[i]));
+    held_rows_of_coarser_.push_back(HeldRowsOn(*supports[i]));
   }
 }
 
@@ -31,7 +31,11 @@ bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
   const auto make_blocks = [&stiffness, this] {
     return stiffness.Blocks(0, coarsest_.Graph());
   };
-  return coarsest_.FactorizeBlocks(make_blocks) && SetUpCycle();
+  if (!coarsest_.FactorizeBlocks(make_blocks)) {
+    return false;
+  }
+  coarsest_.KeepPreconditioner();
+  return SetUpCycle();
 }
 
 bool RefinedStiffness::SetUpCycle() {
@@ -43,7 +47,7 @@ bool RefinedStiffness::SetUpCycle() {
       return false;
     }
     space.inverse_blocks =
-        InverseBlocks(stiffness_->DiagonalBlocks(i), IsFreeIn(i));
+        InverseBlocks(stiffness_->DiagonalBlocks(i), HeldRowsIn(i));
     space.multiply = [this, i](const Eigen::MatrixXd& x) {
       return Multiply(i, x);
     };
@@ -65,16 +69,17 @@ bool RefinedStiffness::FactorizeFinest() {
 
 ConjugateGradientResult RefinedStiffness::Iterate(const Eigen::MatrixXd& all,
                                                   Eigen::MatrixXd start) {
-  const Eigen::VectorXd& is_free = IsFree();
-  start = is_free.head(start.rows()).asDiagonal() * start;
+  if (start.size() > 0) {
+    start = OfFree(Finest(), std::move(start));
+  }
   ConjugateGradientOptions options;
   options.tolerance = Tolerance();
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(
       [&](const Eigen::MatrixXd& x) { return Multiply(Finest(), x); },
-      [&](const Eigen::MatrixXd& x) { return Cycle(x); },
-      is_free.asDiagonal() * all, std::move(start), options);
+      [&](const Eigen::MatrixXd& x) { return Cycle(x); }, OfFree(Finest(), all),
+      std::move(start), options);
   work_.iterations += result.iterations;
   return result;
 }
@@ -105,7 +110,7 @@ Eigen::MatrixXd RefinedStiffness::Precondition(const Eigen::MatrixXd& all) {
   if (finest_) {
     return finest_->Solve(all);
   }
-  return Cycle(IsFree().asDiagonal() * all);
+  return Cycle(all);
 }
 
 Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
@@ -118,7 +123,7 @@ Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
 
 Eigen::MatrixXd RefinedStiffness::OfFree(std::size_t space,
                                          Eigen::MatrixXd values) const {
-  values.array().colwise() *= IsFreeIn(space).array();
+  values(HeldRowsIn(space), Eigen::all).setZero();
   return values;
 }
 

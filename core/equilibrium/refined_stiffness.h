@@ -66,9 +66,9 @@ class RefinedStiffness : public SupportedStiffness {
   }
 
  private:
-  std::size_t Finest() const { return is_free_of_coarser_.size(); }
-  const Eigen::VectorXd& IsFreeIn(std::size_t space) const {
-    return space == Finest() ? IsFree() : is_free_of_coarser_[space];
+  std::size_t Finest() const { return held_rows_of_coarser_.size(); }
+  const std::vector<Eigen::Index>& HeldRowsIn(std::size_t space) const {
+    return space == Finest() ? HeldRows() : held_rows_of_coarser_[space];
   }
   /// Returns the values with zeros in the held rows of a space.
   Eigen::MatrixXd OfFree(std::size_t space, Eigen::MatrixXd values) const;
@@ -88,8 +88,8 @@ class RefinedStiffness : public SupportedStiffness {
   /// converge.
   std::function<std::unique_ptr<StiffnessSolver>()> make_finest_;
   std::unique_ptr<StiffnessSolver> finest_;
-  /// IsFree of all spaces but the finest.
-  std::vector<Eigen::VectorXd> is_free_of_coarser_;
+  /// HeldRows of all spaces but the finest.
+  std::vector<std::vector<Eigen::Index>> held_rows_of_coarser_;
   std::vector<CycleSpace> cycle_;  ///< All spaces but the coarsest.
   const NestedStiffness* stiffness_ = nullptr;
   /// The smallest eigenvalue of the preconditioned stiffness that any solution

@@ -3,10 +3,18 @@
 namespace elastimate {
 
 SupportedStiffness::SupportedStiffness(const Supports& supports)
-    : is_free_(IsFreeOn(supports)) {}
+    : held_rows_(HeldRowsOn(supports)) {}
 
-Eigen::VectorXd SupportedStiffness::IsFreeOn(const Supports& supports) {
-  return (!supports.held).cast<double>().matrix().reshaped();
+std::vector<Eigen::Index> SupportedStiffness::HeldRowsOn(
+    const Supports& supports) {
+  std::vector<Eigen::Index> rows;
+  const auto is_held = supports.held.reshaped();
+  for (Eigen::Index row = 0; row < is_held.size(); ++row) {
+    if (is_held(row)) {
+      rows.push_back(row);
+    }
+  }
+  return rows;
 }
 
 Eigen::MatrixXd SupportedStiffness::Extend(const Eigen::MatrixXd& held) {
@@ -18,11 +26,11 @@ Eigen::MatrixXd SupportedStiffness::ExtendTransposed(
   return OfHeld(values) - HeldForces(Solve(values));
 }
 
-Eigen::MatrixXd SupportedStiffness::OfHeld(Eigen::MatrixXd values) const {
-  for (Eigen::Index k = 0; k < values.cols(); ++k) {
-    values.col(k) = (is_free_.array() != 0).select(0.0, values.col(k));
-  }
-  return values;
+Eigen::MatrixXd SupportedStiffness::OfHeld(
+    const Eigen::MatrixXd& values) const {
+  Eigen::MatrixXd of_held = Eigen::MatrixXd::Zero(values.rows(), values.cols());
+  of_held(held_rows_, Eigen::all) = values(held_rows_, Eigen::all);
+  return of_held;
 }
 
 }  // namespace elastimate

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/mesh/node_graph.h"
@@ -36,6 +37,7 @@ class SupportedStiffness {
 
   /// Does what Solve does as far as one application of the preconditioner does
   /// it, where there is no factor; symmetric and positive definite.
+  /// Precondition: the held rows are zero.
   virtual Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all) {
     return Solve(all);
   }
@@ -57,8 +59,12 @@ class SupportedStiffness {
   virtual Eigen::MatrixXd HeldForcesTransposed(
       const Eigen::MatrixXd& held) const = 0;
 
+  /// Sets the held rows to zero.
+  void ClearHeld(Eigen::Ref<Eigen::MatrixXd> values) const {
+    values(held_rows_, Eigen::all).setZero();
+  }
   /// Returns `values` with zeros in the free rows.
-  Eigen::MatrixXd OfHeld(Eigen::MatrixXd values) const;
+  Eigen::MatrixXd OfHeld(const Eigen::MatrixXd& values) const;
 
   /// Returns the graph of the mesh whose stiffness is assembled.
   virtual const NodeGraph& GraphOfAssembled() const = 0;
@@ -70,14 +76,14 @@ class SupportedStiffness {
 
  protected:
   explicit SupportedStiffness(const Supports& supports);
-  /// Returns 1 for each free degree of freedom, and 0 for each held one.
-  const Eigen::VectorXd& IsFree() const { return is_free_; }
-  /// Returns what IsFree is on other supports.
-  static Eigen::VectorXd IsFreeOn(const Supports& supports);
+  /// Returns the held degrees of freedom, in ascending order.
+  const std::vector<Eigen::Index>& HeldRows() const { return held_rows_; }
+  /// Returns what HeldRows is on other supports.
+  static std::vector<Eigen::Index> HeldRowsOn(const Supports& supports);
   double Tolerance() const { return tolerance_; }
 
  private:
-  Eigen::VectorXd is_free_;
+  std::vector<Eigen::Index> held_rows_;
   double tolerance_ = StiffnessSolver::kAccurate;
 };
 

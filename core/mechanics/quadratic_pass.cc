@@ -92,8 +92,10 @@ void FillNodeRecords(const QuadraticMesh& mesh, const NodeRange& nodes,
 // Sets the rows of the nodes that are in no block of even number.
 template <int kDimension>
 void SetGapsToZero(const QuadraticMesh& mesh, Eigen::MatrixXd& result) {
-  for (const NodeRange& gap : mesh.Blocks().gaps) {
-    for (std::ptrdiff_t i = gap.first; i < gap.end; ++i) {
+  const std::vector<NodeRange>& gaps = mesh.Blocks().gaps;
+#pragma omp parallel for schedule(dynamic) if (gaps.size() > 1)
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    for (std::ptrdiff_t i = gaps[k].first; i < gaps[k].end; ++i) {
       result.middleRows<kDimension>(kDimension * mesh.NodeOfMesh(i)).setZero();
     }
   }

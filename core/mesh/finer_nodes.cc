@@ -74,6 +74,9 @@ template <int kDimension>
 void InterpolateColumn(const FinerNodes::Weights& weights,
                        const double* at_nodes, double* at_middles) {
   using Values = Eigen::Matrix<double, kDimension, 1>;
+  // A thread takes about as long to start as so many rows.
+  constexpr Eigen::Index kFewRows = 5000;
+#pragma omp parallel for schedule(static) if (weights.rows() > kFewRows)
   for (Eigen::Index row = 0; row < weights.rows(); ++row) {
     Values sum = Values::Zero();
     for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;

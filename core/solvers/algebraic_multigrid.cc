@@ -196,9 +196,14 @@ bool AlgebraicMultigrid::AddSpace(const DividedMatrix& matrix) {
     scale_ = trace(0) / diagonal_of_spaces_;
   }
   // Blocks of coarse spaces may be singular, as their modes may be.
+  std::vector<Eigen::Index> held;
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+    if (!(diagonal(i) > 0)) {
+      held.push_back(i);
+    }
+  }
   space.inverse_blocks =
-      InverseBlocks(is_finest ? blocks : Eigen::MatrixXd(diagonal),
-                    (diagonal.array() > 0).cast<double>().matrix().transpose());
+      InverseBlocks(is_finest ? blocks : Eigen::MatrixXd(diagonal), held);
   int num_products = 0;
   space.largest_eigenvalue = LargestEigenvalue(
       space.multiply, space.inverse_blocks, num_products, rows_.ranks);

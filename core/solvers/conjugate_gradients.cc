@@ -3,8 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
+
+#include "elastimate/core/algebra/tall_columns.h"
 
 namespace elastimate {
 namespace {
@@ -54,6 +57,7 @@ class Iterations {
       : multiply_(multiply),
         precondition_(precondition),
         options_(options),
+        num_rows_(right_hand_sides.rows()),
         num_columns_(right_hand_sides.cols()) {
     result_.smallest_eigenvalue = options.smallest_eigenvalue;
     const Eigen::RowVectorXd size = SumsOfMagnitudes(right_hand_sides);
@@ -64,10 +68,10 @@ class Iterations {
       }
     }
     result_.columns = int(columns_.size());
-    force_ = std::move(right_hand_sides);
-    KeepColumns(columns_, force_);
-    residual_ = force_;
-    x_ = Eigen::MatrixXd::Zero(force_.rows(), force_.cols());
+    residual_ = std::move(right_hand_sides);
+    KeepColumns(columns_, residual_);
+    x_ = Eigen::MatrixXd::Zero(residual_.rows(), residual_.cols());
+    energy_ = Eigen::RowVectorXd::Zero(residual_.cols());
     lanczos_.resize(columns_.size());
   }
 
@@ -84,12 +88,13 @@ class Iterations {
     }
     const Eigen::MatrixXd product = Multiply(guess);
     const Eigen::RowVectorXd energy = ProductsOfColumns(guess, product);
-    const Eigen::RowVectorXd work = ProductsOfColumns(guess, force_);
+    const Eigen::RowVectorXd work = ProductsOfColumns(guess, residual_);
     const Eigen::RowVectorXd scale =
         (energy.array() > 0).select(work.array() / energy.array(), 0.0);
-    residual_ -= product * scale.asDiagonal();
+    energy_ = scale.cwiseProduct(work);
+    AddTo(residual_, product, -scale);
     x_ = std::move(guess);
-    x_ = x_ * scale.asDiagonal();
+    Scale(x_, scale);
   }
 
   ConjugateGradientResult Run() {
@@ -98,11 +103,14 @@ class Iterations {
       ++step;
     }
     result_.has_converged = columns_.empty();
-    MakeSolution();
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
-      TakeEigenvaluesOf(lanczos_[k]);
+    for (const LanczosMatrix& lanczos : lanczos_) {
+      TakeEigenvaluesOf(lanczos);
     }
+    direction_.resize(0, 0);
+    product_.resize(0, 0);
+    std::vector<Eigen::Index> left(columns_.size());
+    std::iota(left.begin(), left.end(), Eigen::Index{0});
+    PutIntoResult(left);
     return std::move(result_);
   }
 
@@ -114,16 +122,15 @@ class Iterations {
     }
   }
 
-  template <class A, class B>
-  Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixBase<A>& a,
-                                       const Eigen::MatrixBase<B>& b) const {
-    Eigen::RowVectorXd products = a.cwiseProduct(b).colwise().sum();
+  Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixXd& a,
+                                       const Eigen::MatrixXd& b) const {
+    Eigen::RowVectorXd products = ColumnProducts(a, b);
     SumOverRanks(options_.ranks, products);
     return products;
   }
 
   Eigen::RowVectorXd SumsOfMagnitudes(const Eigen::MatrixXd& a) const {
-    Eigen::RowVectorXd sums = a.cwiseAbs().colwise().sum();
+    Eigen::RowVectorXd sums = ColumnMagnitudes(a);
     SumOverRanks(options_.ranks, sums);
     return sums;
   }
@@ -149,10 +156,14 @@ class Iterations {
       share = -(length_.array() * ProductsOfColumns(z, product_).array() /
                 last_rz_.array())
                    .matrix();
-      direction_ = z + direction_ * share.asDiagonal();
+      Scale(direction_, share);
+      AddTo(direction_, z);
     } else {
       direction_ = std::move(z);
     }
+    // A column of a large mesh needs much memory.
+    z.resize(0, 0);
+    product_.resize(0, 0);
     product_ = Multiply(direction_);
     const Eigen::RowVectorXd energy = ProductsOfColumns(direction_, product_);
     if (!(energy.array() > 0).all() || !energy.allFinite()) {
@@ -160,8 +171,9 @@ class Iterations {
     }
     length_ = rz.cwiseQuotient(energy);
     last_rz_ = rz;
-    x_ += direction_ * length_.asDiagonal();
-    residual_ -= product_ * length_.asDiagonal();
+    AddTo(x_, direction_, length_);
+    AddTo(residual_, product_, -length_);
+    energy_ += length_.cwiseProduct(rz);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       lanczos_[k].Add(length_(Eigen::Index(k)), share(Eigen::Index(k)));
     }
@@ -189,35 +201,39 @@ class Iterations {
     return rz <= most * result_.smallest_eigenvalue;
   }
 
-  // Allocates the solution as late as possible, when the first column is done.
-  void MakeSolution() {
+  // Puts the columns at these places into the result.
+  void PutIntoResult(const std::vector<Eigen::Index>& places) {
+    if (Eigen::Index(places.size()) == num_columns_) {
+      result_.solution = std::move(x_);
+      return;
+    }
     if (result_.solution.cols() == 0) {
-      result_.solution.setZero(x_.rows(), num_columns_);
+      result_.solution.setZero(num_rows_, num_columns_);
+    }
+    for (const Eigen::Index k : places) {
+      result_.solution.col(columns_[k]) = x_.col(k);
     }
   }
 
   // Puts the columns that are done into the result, and keeps the others.
   void TakeWhatIsDone(Eigen::MatrixXd& z, Eigen::RowVectorXd& rz) {
+    std::vector<Eigen::Index> done;
     std::vector<Eigen::Index> kept;
-    const Eigen::RowVectorXd energy = ProductsOfColumns(x_, force_ - residual_);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (IsDone(k, rz(Eigen::Index(k)), energy(Eigen::Index(k)))) {
-        MakeSolution();
-        result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
-      } else {
-        kept.push_back(Eigen::Index(k));
-      }
+      const auto place = Eigen::Index(k);
+      (IsDone(k, rz(place), energy_(place)) ? done : kept).push_back(place);
     }
-    if (kept.size() == columns_.size()) {
+    if (done.empty()) {
       return;
     }
+    PutIntoResult(done);
     for (Eigen::MatrixXd* const matrix :
-         {&force_, &x_, &residual_, &direction_, &product_, &z}) {
+         {&x_, &residual_, &direction_, &product_, &z}) {
       if (matrix->cols() > 0) {
         KeepColumns(kept, *matrix);
       }
     }
-    for (Eigen::RowVectorXd* const row : {&rz, &length_, &last_rz_}) {
+    for (Eigen::RowVectorXd* const row : {&rz, &length_, &last_rz_, &energy_}) {
       if (row->size() > 0) {
         *row = (*row)(kept).eval();
       }
@@ -233,17 +249,21 @@ class Iterations {
   const ColumnOperator& multiply_;
   const ColumnOperator& precondition_;
   const ConjugateGradientOptions& options_;
+  Eigen::Index num_rows_;
   Eigen::Index num_columns_;
   ConjugateGradientResult result_;
   std::vector<Eigen::Index>
       columns_;  // Of the right-hand sides, in ascending order.
-  Eigen::MatrixXd force_;
   Eigen::MatrixXd x_;
   Eigen::MatrixXd residual_;
   Eigen::MatrixXd direction_;
   Eigen::MatrixXd product_;  // With the direction.
   Eigen::RowVectorXd length_;
   Eigen::RowVectorXd last_rz_;
+  /// The squared energy norm of the solution as far as it is known, which the
+  /// steps, as they are conjugate, add up to: that of the guess, which the rest
+  /// is conjugate to, and those of the steps.
+  Eigen::RowVectorXd energy_;
   std::vector<LanczosMatrix> lanczos_;
 };
 

@@ -42,6 +42,9 @@ class LinearSolver {
   /// Factorize has kept coarse spaces of another one.  Returns whether that
   /// changed anything.  Precondition: as for Solve.
   virtual bool Renew() { return false; }
+  /// Gives back the memory that Precondition does not need.  Returns whether
+  /// there was any; Solve and Renew then need another Factorize.
+  virtual bool KeepPreconditioner() { return false; }
 
   /// Returns the iterations of all columns until now; 0 for a direct solver.
   virtual int NumIterations() const { return 0; }

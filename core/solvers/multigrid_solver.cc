@@ -42,6 +42,7 @@ class RowsOfNodes : public MultigridRows {
     }
     return matrix_;
   }
+  void ForgetRest() { std::vector<float>().swap(matrix_.rows.rest); }
   // Without the values, the matrix could not be made again, so it stays.
   void FreeMatrix() override {
     if (values_->size() > 0) {
@@ -113,6 +114,10 @@ class MultigridOfOneRank : public LinearSolver {
         multigrid_.Cycle(free_rows_.InBlocks(columns)));
   }
   bool Renew() override { return multigrid_.Renew(); }
+  bool KeepPreconditioner() override {
+    rows_.ForgetRest();
+    return true;
+  }
   int NumIterations() const override { return multigrid_.NumIterations(); }
   int NumSetUps() const override { return multigrid_.NumSetUps(); }
 

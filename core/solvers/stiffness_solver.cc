@@ -127,6 +127,7 @@ bool StiffnessSolver::MakeValues() {
 bool StiffnessSolver::FactorizeValues() {
   Shared& shared = *shared_;
   own_factorization_ = ++shared.num_factorizations;
+  shared.has_preconditioner_only = false;
   if (shared.is_multigrid) {
     const int set_ups_before = shared.solver->NumSetUps();
     const bool is_set_up = shared.solver->Factorize(shared.values);
@@ -150,6 +151,16 @@ bool StiffnessSolver::FactorizeAgain() {
          (MakeValues() && FactorizeValues());
 }
 
+bool StiffnessSolver::FactorizeToSolve() {
+  return shared_->has_preconditioner_only ? MakeValues() && FactorizeValues()
+                                          : FactorizeAgain();
+}
+
+void StiffnessSolver::KeepPreconditioner() {
+  shared_->has_preconditioner_only =
+      CanMakeValues() && shared_->solver->KeepPreconditioner();
+}
+
 void StiffnessSolver::FallBackToCholesky(const std::string& why) {
   Shared& shared = *shared_;
   shared.notice =
@@ -166,7 +177,7 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
   Shared& shared = *shared_;
   work_.solves += static_cast<int>(all.cols());
   std::optional<Eigen::MatrixXd> solution;
-  if (FactorizeAgain()) {
+  if (FactorizeToSolve()) {
     const Eigen::MatrixXd right_hand_sides =
         shared.degrees_of_freedom.Restrict(all);
     const Eigen::MatrixXd free_start =
@@ -209,7 +220,7 @@ Eigen::MatrixXd StiffnessSolver::Precondition(const Eigen::MatrixXd& all) {
 }
 
 bool StiffnessSolver::Renew() {
-  if (!FactorizeAgain()) {
+  if (!FactorizeToSolve()) {
     return false;
   }
   LinearSolver& solver = *shared_->solver;

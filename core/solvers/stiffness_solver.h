@@ -119,6 +119,9 @@ class StiffnessSolver {
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all);
   /// Does what LinearSolver::Renew does.
   bool Renew();
+  /// Gives back the memory that Precondition does not need.  Solve and Renew
+  /// take it again, for which they factorise.
+  void KeepPreconditioner();
 
   /// Returns nu of the present factorisation; NaN when there is none, or when
   /// it is of blocks.
@@ -141,6 +144,9 @@ class StiffnessSolver {
     Eigen::VectorXd values;
     std::unique_ptr<LinearSolver> solver;
     bool is_multigrid = false;
+    /// Whether nothing but Precondition is possible before the next
+    /// factorisation.
+    bool has_preconditioner_only = false;
     std::string notice;
     std::int64_t num_factorizations = 0;
   };
@@ -153,6 +159,7 @@ class StiffnessSolver {
   bool MakeValues();
   bool FactorizeValues();
   bool FactorizeAgain();
+  bool FactorizeToSolve();
   void FallBackToCholesky(const std::string& why);
 
   std::shared_ptr<Shared> shared_;

@@ -4,6 +4,9 @@
 #include <cassert>
 #include <limits>
 #include <random>
+#include <utility>
+
+#include "elastimate/core/algebra/tall_columns.h"
 
 namespace elastimate {
 namespace {
@@ -17,22 +20,18 @@ constexpr double kLower = 0.1;
 constexpr int kSteps = 6;
 
 template <int kDimension>
-void InvertFree(const Eigen::MatrixXd& blocks, const Eigen::VectorXd& is_free,
-                Eigen::MatrixXd& inverses) {
+void InvertEach(const Eigen::MatrixXd& blocks, Eigen::MatrixXf& inverses) {
   using Block = Eigen::Matrix<double, kDimension, kDimension>;
   for (Eigen::Index i = 0; i < blocks.cols(); i += kDimension) {
-    const auto free = is_free.segment<kDimension>(i);
-    Block block = free.asDiagonal() * Block(blocks.middleCols<kDimension>(i)) *
-                  free.asDiagonal();
-    block.diagonal() += Eigen::Matrix<double, kDimension, 1>::Ones() - free;
+    const Block block = blocks.middleCols<kDimension>(i);
     inverses.middleCols<kDimension>(i) =
-        free.asDiagonal() * Block(block.inverse()) * free.asDiagonal();
+        Block(block.inverse()).template cast<float>();
   }
 }
 
 // Sets x to keep x + B v for such blocks B, in one pass over memory.
 template <int kDimension, class Columns>
-void AddEach(const Eigen::MatrixXd& blocks, const Columns& v, double keep,
+void AddEach(const Eigen::MatrixXf& blocks, const Columns& v, double keep,
              Eigen::MatrixXd& x) {
   // A thread takes about as long to start as so many rows.
   constexpr Eigen::Index kFewRows = 20000;
@@ -45,13 +44,14 @@ void AddEach(const Eigen::MatrixXd& blocks, const Columns& v, double keep,
       auto sum = x.col(k).segment<kDimension>(i);
       sum = keep * sum + (blocks.middleCols<kDimension>(i)
                               .template topRows<kDimension>()
+                              .template cast<double>()
                               .lazyProduct(of_node));
     }
   }
 }
 
 template <class Columns>
-void AddBlocksTimes(const Eigen::MatrixXd& blocks, const Columns& v,
+void AddBlocksTimes(const Eigen::MatrixXf& blocks, const Columns& v,
                     double keep, Eigen::MatrixXd& x) {
   if (blocks.rows() == 3) {
     AddEach<3>(blocks, v, keep, x);
@@ -63,33 +63,66 @@ void AddBlocksTimes(const Eigen::MatrixXd& blocks, const Columns& v,
 }
 
 template <class Columns>
-Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
+Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXf& blocks,
                                const Columns& v) {
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(v.rows(), v.cols());
   AddBlocksTimes(blocks, v, 1, products);
   return products;
 }
 
-// Returns what two steps of Chebyshev's iteration for K x = force make of
-// x = 0.
-Eigen::MatrixXd Smooth(const CycleSpace& space, const Eigen::MatrixXd& force) {
-  const double middle = (kUpper + kLower) / 2 * space.largest_eigenvalue;
-  const double radius = (kUpper - kLower) / 2 * space.largest_eigenvalue;
-  // The three-term recurrence is that of [Saad, Iterative Methods for Sparse
-  // Linear Systems, algorithm 12.1].
-  const double share = 1 / (2 * middle / radius - radius / middle);
-  Eigen::MatrixXd x = MultiplyBlocks(space.inverse_blocks, force / middle);
+// Chebyshev's iteration of two steps for K x = force: the three-term recurrence
+// [Saad, Iterative Methods for Sparse Linear Systems, algorithm 12.1]
+//
+//   x1 = x0 + D^-1 (force - K x0) / middle,
+//   x2 = x1 + momentum (x1 - x0) + length D^-1 (force - K x1).
+struct Chebyshev {
+  double middle;
+  double momentum;
+  double length;
+
+  explicit Chebyshev(double largest_eigenvalue)
+      : middle((kUpper + kLower) / 2 * largest_eigenvalue) {
+    const double radius = (kUpper - kLower) / 2 * largest_eigenvalue;
+    const double share = 1 / (2 * middle / radius - radius / middle);
+    momentum = share * radius / middle;
+    length = 2 * share / radius;
+  }
+};
+
+// Returns what Chebyshev's iteration makes of x = 0.
+Eigen::MatrixXd SmoothFromZero(const CycleSpace& space,
+                               const Eigen::MatrixXd& force) {
+  const Chebyshev steps(space.largest_eigenvalue);
+  Eigen::MatrixXd x =
+      MultiplyBlocks(space.inverse_blocks, force / steps.middle);
   const Eigen::MatrixXd product = space.multiply(x);
-  AddBlocksTimes(space.inverse_blocks, 2 * share / radius * (force - product),
-                 1 + share * radius / middle, x);
+  AddBlocksTimes(space.inverse_blocks, steps.length * (force - product),
+                 1 + steps.momentum, x);
   return x;
+}
+
+void Smooth(const CycleSpace& space, const Eigen::MatrixXd& force,
+            Eigen::MatrixXd& x) {
+  const Chebyshev steps(space.largest_eigenvalue);
+  Eigen::MatrixXd product = space.multiply(x);
+  Eigen::MatrixXd change =
+      MultiplyBlocks(space.inverse_blocks, (force - product) / steps.middle);
+  AddTo(x, change);
+  product.resize(0, 0);  // A column of a fine space needs much memory.
+  product = space.multiply(x);
+  AddBlocksTimes(space.inverse_blocks, steps.length * (force - product),
+                 steps.momentum, change);
+  AddTo(x, change);
 }
 
 // Returns force - K x.
 Eigen::MatrixXd Rest(const CycleSpace& space, const Eigen::MatrixXd& force,
                      const Eigen::MatrixXd& x) {
   Eigen::MatrixXd rest = space.multiply(x);
-  rest = force - rest;
+  ForRowBlocks(rest.rows(), [&](Eigen::Index first, Eigen::Index count) {
+    rest.middleRows(first, count) =
+        force.middleRows(first, count) - rest.middleRows(first, count);
+  });
   return rest;
 }
 
@@ -101,13 +134,11 @@ Eigen::MatrixXd CycleFrom(const std::vector<CycleSpace>& spaces,
     return solve_coarsest(force);
   }
   const CycleSpace& space = spaces[num_spaces - 1];
-  Eigen::MatrixXd x = Smooth(space, force);
-  // The rest of the force is computed twice rather than kept, because a column
-  // of a fine space needs much memory.
+  Eigen::MatrixXd x = SmoothFromZero(space, force);
   Eigen::MatrixXd coarse = space.restrict(Rest(space, force, x));
   coarse = CycleFrom(spaces, num_spaces - 1, solve_coarsest, coarse);
-  x += space.interpolate(coarse);
-  x += Smooth(space, Rest(space, force, x));
+  AddTo(x, space.interpolate(coarse));
+  Smooth(space, force, x);
   return x;
 }
 
@@ -127,33 +158,45 @@ Eigen::MatrixXd VCycle(const std::vector<CycleSpace>& spaces,
   return CycleFrom(spaces, spaces.size(), solve_coarsest, force);
 }
 
-Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
-                              const Eigen::VectorXd& is_free) {
-  Eigen::MatrixXd inverses(blocks.rows(), blocks.cols());
-  if (blocks.rows() == 3) {
-    InvertFree<3>(blocks, is_free, inverses);
-  } else if (blocks.rows() == 2) {
-    InvertFree<2>(blocks, is_free, inverses);
+Eigen::MatrixXf InverseBlocks(Eigen::MatrixXd blocks,
+                              const std::vector<Eigen::Index>& held) {
+  const Eigen::Index size = blocks.rows();
+  for (const Eigen::Index row : held) {
+    const Eigen::Index i = row % size;
+    auto block = blocks.middleCols(row - i, size);
+    block.row(i).setZero();
+    block.col(i).setZero();
+    block(i, i) = 1;
+  }
+  Eigen::MatrixXf inverses(blocks.rows(), blocks.cols());
+  if (size == 3) {
+    InvertEach<3>(blocks, inverses);
+  } else if (size == 2) {
+    InvertEach<2>(blocks, inverses);
   } else {
-    assert(blocks.rows() == 1);
-    InvertFree<1>(blocks, is_free, inverses);
+    assert(size == 1);
+    InvertEach<1>(blocks, inverses);
+  }
+  for (const Eigen::Index row : held) {
+    inverses(row % size, row) = 0;
   }
   return inverses;
 }
 
 double LargestEigenvalue(const ColumnOperator& multiply,
-                         const Eigen::MatrixXd& inverse_blocks,
+                         const Eigen::MatrixXf& inverse_blocks,
                          int& num_products, const Ranks* ranks) {
   ConjugateGradientOptions options;
   options.ranks = ranks;
   options.tolerance = 0;
   options.most_iterations = kSteps;
+  Eigen::MatrixXd force = multiply(RandomSigns(inverse_blocks.cols(), ranks));
   const ConjugateGradientResult result = SolveByConjugateGradients(
       multiply,
       [&](const Eigen::MatrixXd& x) {
         return MultiplyBlocks(inverse_blocks, x);
       },
-      multiply(RandomSigns(inverse_blocks.cols(), ranks)), {}, options);
+      std::move(force), {}, options);
   num_products += 1 + result.products;
   // A few elements have fewer directions than there are steps.  Where not even
   // the first direction has a positive energy, K is not positive definite.

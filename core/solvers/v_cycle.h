@@ -13,7 +13,7 @@ namespace elastimate {
 struct CycleSpace {
   ColumnOperator multiply;  ///< K x.
   /// The inverses of the diagonal blocks of K, as InverseBlocks returns them.
-  Eigen::MatrixXd inverse_blocks;
+  Eigen::MatrixXf inverse_blocks;
   double largest_eigenvalue = 0;  ///< LargestEigenvalue, for these blocks.
   ColumnOperator restrict;        ///< From this space to the next coarser one.
   ColumnOperator interpolate;     ///< Its transpose.
@@ -30,18 +30,19 @@ struct CycleSpace {
                                      const Eigen::MatrixXd& force);
 
 /// Inverts each of some blocks, which stand side by side, on its free
-/// components, and leaves zeros in the rows and columns of the held ones.
-/// `is_free` is 1 or 0 for each degree of freedom.  The inverses stand side by
-/// side as the blocks do.  Precondition: blocks of 1, 2 or 3 rows.
-[[nodiscard]] Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
-                                            const Eigen::VectorXd& is_free);
+/// components, and leaves zeros in the rows and columns of the `held` ones,
+/// which are numbered over all blocks.  The inverses stand side by side as the
+/// blocks do.  Single precision is enough for a preconditioner.  Precondition:
+/// blocks of 1, 2 or 3 rows.
+[[nodiscard]] Eigen::MatrixXf InverseBlocks(
+    Eigen::MatrixXd blocks, const std::vector<Eigen::Index>& held);
 
 /// Estimates the largest eigenvalue of D^-1 K for the diagonal blocks D; the
 /// estimate may be a tenth too small.  The result is NaN where K is seen not to
 /// be positive definite.  Takes 6 products; their number is added to
 /// `num_products`.  Where several ranks have the rows, all of them call it.
 [[nodiscard]] double LargestEigenvalue(const ColumnOperator& multiply,
-                                       const Eigen::MatrixXd& inverse_blocks,
+                                       const Eigen::MatrixXf& inverse_blocks,
                                        int& num_products,
                                        const Ranks* ranks = nullptr);
 

@@ -42,6 +42,9 @@ class CertifiedDescent {
   /// Has the next minimum take other rows: CertifiedFit::ForgetRows.
   void ForgetRows() { fit_.ForgetRows(); }
 
+  /// Gives back memory: CertifiedFit::KeepModel.
+  void KeepModel() { fit_.KeepModel(); }
+
   const StiffnessSolver& Solver() const { return fit_.Model().Solver(); }
   const NodeGraph& Graph() const { return Solver().Graph(); }
   Work WorkDone() const { return fit_.Model().WorkDone(); }

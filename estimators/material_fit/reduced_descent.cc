@@ -8,6 +8,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/algebra/tall_columns.h"
 #include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
@@ -80,6 +81,11 @@ class ReducedDescent {
   }
   void AddPole(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
                Eigen::MatrixXd sensitivities);
+  /// Iterations over finer spaces take as long for each variable alone, and
+  /// need less memory.
+  Eigen::Index NumVariablesAtATime() const {
+    return misfit_.SmallStrainModel().IsRefined() ? 1 : misfit_.Free().Size();
+  }
   /// df(u)/dp of each load case side by side, at the u of the check, for
   /// directions d theta / dp.
   Eigen::MatrixXd ForcesOf(const Eigen::MatrixXd& directions);
@@ -106,6 +112,9 @@ bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
   // The first pole may be where an earlier descent ended, with the factor of
   // that.  A further one is set where that factor is too far away.
   Equilibrium& model = misfit_.SmallStrainModel();
+  // Columns of large meshes need much memory.
+  displacement_.resize(0, 0);
+  adjoint_.resize(0, 0);
   if (num_poles_ > 0) {
     const FreeParameters& free = misfit_.Free();
     if (reduced_.Solve(free.ModuliAt(x))) {
@@ -117,12 +126,13 @@ bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
       return false;
     }
   }
+  Eigen::MatrixXd displacement;
   Eigen::MatrixXd sensitivities;
-  if (!misfit_.SolutionAt(x, &displacement_, &sensitivities)) {
+  if (!misfit_.SolutionAt(x, &displacement, &sensitivities)) {
     return false;
   }
   misfit_.ForgetSolution();
-  AddPole(x, displacement_, std::move(sensitivities));
+  AddPole(x, displacement, std::move(sensitivities));
   return true;
 }
 
@@ -168,7 +178,7 @@ void ReducedDescent::AddPole(const Eigen::VectorXd& x,
   for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
     vectors.middleCols((n + 1) * k + 1, n) = sensitivities.middleCols(n * k, n);
   }
-  sensitivities.resize(0, 0);  // Vectors of large meshes need much memory.
+  sensitivities.resize(0, 0);
   vectors(Eigen::all, Eigen::seq(0, Eigen::last, n + 1)) =
       WithoutHeld(displacement);
   reduced_.Extend(misfit_.Free().ModuliAt(x), std::move(vectors));
@@ -251,11 +261,15 @@ BoundedMinimum ReducedDescent::MinimumFrom(const Eigen::VectorXd& x) {
 Eigen::MatrixXd ReducedDescent::ForcesOf(const Eigen::MatrixXd& directions) {
   const Eigen::Index n = directions.cols();
   Eigen::MatrixXd forces(displacement_.rows(), n * displacement_.cols());
+  const InternalForces& of_mesh = misfit_.SmallStrainModel().Forces();
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    forces.middleCols(n * k, n) =
-        misfit_.SmallStrainModel().Forces().Columns(displacement_.col(k)) *
-        directions;
+    if (n == 1) {
+      forces.col(k) = of_mesh.Multiply(directions.col(0), displacement_.col(k));
+    } else {
+      forces.middleCols(n * k, n) =
+          of_mesh.Columns(displacement_.col(k)) * directions;
+    }
   }
   return forces;
 }
@@ -312,11 +326,15 @@ bool ReducedDescent::Check(const BoundedMinimum& minimum) {
   if (!SolveForAdjoint(residual, tolerance / std::sqrt(largest))) {
     return false;
   }
-  const Eigen::MatrixXd forces = ForcesOf(directions_);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(free.Size());
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    gradient -= InnerProducts(forces.middleCols(free.Size() * k, free.Size()),
-                              adjoint_.col(k));
+  const Eigen::Index at_a_time = NumVariablesAtATime();
+  for (Eigen::Index i = 0; i < free.Size(); i += at_a_time) {
+    const Eigen::MatrixXd forces =
+        ForcesOf(directions_.middleCols(i, at_a_time));
+    for (Eigen::Index k = 0; k < num_cases; ++k) {
+      gradient.segment(i, at_a_time) -= InnerProducts(
+          forces.middleCols(at_a_time * k, at_a_time), adjoint_.col(k));
+    }
   }
   // A bound holds what the gradient drives against it.
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
@@ -351,15 +369,20 @@ void ReducedDescent::Refine() {
 void ReducedDescent::Finish(const Eigen::VectorXd& x) {
   adjoint_.resize(0, 0);
   const Eigen::Index n = directions_.cols();
-  Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
-  // Cycles take as long for each variable alone, and need less memory.
-  const Eigen::Index at_a_time = misfit_.SmallStrainModel().IsRefined() ? 1 : n;
+  Eigen::MatrixXd sensitivities =
+      reduced_.DisplacementSensitivities(directions_);
+  reduced_.ForgetBases();
+  const Eigen::Index at_a_time = NumVariablesAtATime();
   for (Eigen::Index i = 0; i < n; i += at_a_time) {
-    const Eigen::MatrixXd directions = directions_.middleCols(i, at_a_time);
-    Eigen::MatrixXd columns = reduced_.DisplacementSensitivities(directions);
-    Eigen::MatrixXd forces = -ForcesOf(directions);
+    Eigen::MatrixXd columns(sensitivities.rows(),
+                            at_a_time * displacement_.cols());
+    for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
+      columns.middleCols(at_a_time * k, at_a_time) =
+          sensitivities.middleCols(n * k + i, at_a_time);
+    }
+    Eigen::MatrixXd forces = ForcesOf(-directions_.middleCols(i, at_a_time));
     const Eigen::VectorXd energies =
-        columns.cwiseProduct(forces).colwise().sum().cwiseMax(0).cwiseSqrt();
+        ColumnProducts(columns, forces).cwiseMax(0).cwiseSqrt().transpose();
     // Where that takes too many iterations, the misfit solves when it is next
     // evaluated there.
     if (!SolveNear(std::move(forces), kSensitivityAccuracy * energies,
@@ -371,7 +394,7 @@ void ReducedDescent::Finish(const Eigen::VectorXd& x) {
           columns.middleCols(at_a_time * k, at_a_time);
     }
   }
-  misfit_.Place(x, displacement_, sensitivities);
+  misfit_.Place(x, std::move(displacement_), std::move(sensitivities));
 }
 
 // From a pole on.

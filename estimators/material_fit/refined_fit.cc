@@ -138,6 +138,9 @@ class Refinement {
                                                 ? last->SolverOfCoarsest()
                                                 : nullptr);
     space->Misfit().SetNeighbours(neighbours_);
+    if (last != nullptr) {
+      last->KeepMinimum();
+    }
     if (space->Misfit().HasLargeStrains() && last != nullptr &&
         last->Fit().displacement.size() > 0) {
       space->Misfit().Model().BeginWith(

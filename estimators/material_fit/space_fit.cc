@@ -119,6 +119,12 @@ void SpaceFit::Measure(const Scene& scene, Rows rows,
   }
 }
 
+void SpaceFit::KeepMinimum() {
+  if (certified_) {
+    certified_->KeepModel();
+  }
+}
+
 const StiffnessSolver* SpaceFit::SolverOfCoarsest() {
   if (certified_) {
     return &certified_->Solver();

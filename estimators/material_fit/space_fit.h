@@ -102,6 +102,10 @@ class SpaceFit {
   void Measure(const Scene& scene, Rows rows,
                const std::vector<Outlier>& left_out = {});
 
+  /// Gives back the memory that only another Minimize needs, which then takes
+  /// longer.
+  void KeepMinimum();
+
   /// The square sum of what is left of the displacements at the minimum.
   double SquareSum() const { return square_sum_; }
   Eigen::Index NumRows() const { return misfit_.Observed().Size(); }

@@ -89,9 +89,10 @@ bool DisplacementMisfit::SolutionAt(const Eigen::VectorXd& x,
   if (!MoveTo(x)) {
     return false;
   }
-  *displacement = Displacement();
+  // The solves of sensitivities need much memory.
   *sensitivities = placed_ ? placed_->sensitivities
                            : model_->Sensitivities(free_.ModuliJacobian(x));
+  *displacement = Displacement();
   return true;
 }
 
@@ -229,10 +230,10 @@ void DisplacementMisfit::ForgetSolution() {
 }
 
 void DisplacementMisfit::Place(const Eigen::VectorXd& x,
-                               const Eigen::MatrixXd& displacement,
-                               const Eigen::MatrixXd& sensitivities) {
-  placed_ = Placed{displacement, sensitivities};
-  residual_ = observed_.Restrict(displacement) - observed_.Measured();
+                               Eigen::MatrixXd displacement,
+                               Eigen::MatrixXd sensitivities) {
+  placed_ = Placed{std::move(displacement), std::move(sensitivities)};
+  residual_ = observed_.Restrict(placed_->displacement) - observed_.Measured();
   x_ = x;
 }
 
@@ -242,7 +243,7 @@ bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
   }
   Placed placed;
   if (solution_ && solution_(x, &placed.displacement, &placed.sensitivities)) {
-    Place(x, placed.displacement, placed.sensitivities);
+    Place(x, std::move(placed.displacement), std::move(placed.sensitivities));
     return true;
   }
   return MoveModelTo(x);

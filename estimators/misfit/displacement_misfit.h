@@ -114,8 +114,8 @@ class DisplacementMisfit {
   bool Factorize(const Eigen::VectorXd& x);
   /// Takes u and du/dx, as Equilibrium has them, for those at x, of which an
   /// Evaluate there costs nothing.  Precondition: no unknown motions.
-  void Place(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
-             const Eigen::MatrixXd& sensitivities);
+  void Place(const Eigen::VectorXd& x, Eigen::MatrixXd displacement,
+             Eigen::MatrixXd sensitivities);
 
   /// Gives back the memory of the last solution, but for what was placed.  The
   /// factor stays.  Precondition: small strains.

@@ -164,6 +164,11 @@ void CertifiedFit::ForgetRows() {
   least_squares_.reset();
 }
 
+void CertifiedFit::KeepModel() {
+  least_squares_.reset();
+  model_.KeepResponses();
+}
+
 void CertifiedFit::Fit(const ObservedDisplacements& observed) {
   if (!least_squares_ || fitted_version_ != model_.Version()) {
     least_squares_ = std::make_unique<ReducedFit>(model_, observed, searched_,

@@ -59,6 +59,11 @@ class CertifiedFit {
   /// other nodes, or with other weights.
   void ForgetRows();
 
+  /// Gives back the memory that the model does not need.  The next Run
+  /// orthogonalises the rows again, and may set another pole where it would
+  /// have enlarged the model.
+  void KeepModel();
+
   const ReducedFit::Point& Best() const { return best_; }
   /// Whether the last fit is certified.
   bool HasConverged() const { return has_converged_; }

@@ -7,6 +7,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/algebra/tall_columns.h"
 
 namespace elastimate {
 namespace {
@@ -17,11 +18,9 @@ constexpr double kRoundingOfRest = 1e-20;
 constexpr double kRoundingOfCombination = 1e-12;
 
 // 1 / sqrt(energy), zero for what is rounding.
-Eigen::VectorXd Scales(const Eigen::MatrixXd& columns,
-                       const Eigen::MatrixXd& products, double rounding) {
-  const Eigen::VectorXd energies =
-      columns.cwiseProduct(products).colwise().sum();
-  return energies.unaryExpr([&](double energy) {
+Eigen::RowVectorXd Scales(const Eigen::MatrixXd& columns,
+                          const Eigen::MatrixXd& products, double rounding) {
+  return ColumnProducts(columns, products).unaryExpr([&](double energy) {
     return energy > rounding && std::isfinite(energy) ? 1 / std::sqrt(energy)
                                                       : 0.0;
   });
@@ -79,17 +78,17 @@ Eigen::MatrixXd ReducedEquilibrium::NewVectors(const Eigen::VectorXd& moduli,
   };
   const Eigen::MatrixXd old_stiffness = StiffnessOf(load_case, moduli);
   Eigen::MatrixXd products = multiply();
-  Eigen::VectorXd scales = Scales(columns, products, 0);
+  Eigen::RowVectorXd scales = Scales(columns, products, 0);
   for (int i = 0; i < kPasses; ++i) {
-    columns = columns * scales.asDiagonal();
-    products = products * scales.asDiagonal();
+    Scale(columns, scales);
+    Scale(products, scales);
     if (old_stiffness.size() > 0) {
       columns -= load_case.basis * old_stiffness.ldlt().solve(InnerProducts(
                                        load_case.basis, products));
       products = multiply();
       scales = Scales(columns, products, kRoundingOfRest);
-      columns = columns * scales.asDiagonal();
-      products = products * scales.asDiagonal();
+      Scale(columns, scales);
+      Scale(products, scales);
     }
     const SymmetricEigenDecomposition modes =
         DecomposeSymmetric(InnerProducts(columns, products));
@@ -252,6 +251,12 @@ Eigen::MatrixXd ReducedEquilibrium::Adjoint() {
     first += rows.rows();
   }
   return adjoint;
+}
+
+void ReducedEquilibrium::ForgetBases() {
+  for (LoadCase& load_case : cases_) {
+    load_case.basis.resize(0, 0);
+  }
 }
 
 Eigen::MatrixXd ReducedEquilibrium::EnergyOfSensitivities(

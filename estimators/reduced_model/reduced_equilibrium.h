@@ -58,6 +58,10 @@ class ReducedEquilibrium {
   /// The largest ||P v|| / ||v||, in the energy norm, over the bases.
   double ComplianceNorm() const;
 
+  /// Gives back the memory of the bases; what has num_dofs rows cannot be asked
+  /// for any more.
+  void ForgetBases();
+
   int ElementPasses() const { return element_passes_; }
 
  private:

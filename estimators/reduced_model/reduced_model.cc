@@ -221,6 +221,14 @@ void ReducedModel::ExtendKrylov(Eigen::Index k, double inexactness,
   response.next_product = j / remainder;
 }
 
+void ReducedModel::KeepResponses() {
+  solver_.KeepPreconditioner();
+  for (Response& response : responses_) {
+    response.krylov.resize(response.krylov.rows(), 0);
+    response.next_product.resize(0);
+  }
+}
+
 void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
                           const Eigen::VectorXd& j, Response& response) {
   // Below this share of the energy, rounding decides on what is left.

@@ -68,6 +68,10 @@ class ReducedModel {
   /// solves are inexact) and a solve for each response.
   bool Enlarge(double tolerance = StiffnessSolver::kAccurate);
 
+  /// Gives back the memory of the Krylov vectors and of the solver.  There is
+  /// no next vector until the next pole.
+  void KeepResponses();
+
   /// An upper bound of the error of response `k` at nu, in the energy norm of
   /// A(nu).  Infinite before the first pole.  O(m^2) for each pole.
   double ErrorBound(Eigen::Index k, double poisson_ratio) const;

@@ -99,6 +99,27 @@ TEST(StiffnessSolver, SharesMemoryInTurns) {
   }
 }
 
+TEST(StiffnessSolver, SolvesAgainAfterItKeptThePreconditionerAlone) {
+  const Scene scene = SmallScene("organ");
+  const Eigen::MatrixXd forces = RandomMatrix(3 * scene.mesh.NumNodes(), 2, 1);
+  for (const SolverKind kind :
+       {SolverKind::kCholesky, SolverKind::kMultigrid}) {
+    if (kind == SolverKind::kMultigrid && !HasMultigrid()) {
+      continue;
+    }
+    StiffnessSolver solver(scene.mesh, scene.supports, kind);
+    ASSERT_TRUE(solver.Factorize(0.3));
+    const Eigen::MatrixXd solution = solver.Solve(forces);
+    const Eigen::MatrixXd cycle = solver.Precondition(forces);
+    solver.KeepPreconditioner();
+    EXPECT_TRUE(solver.Precondition(forces).isApprox(cycle, 1e-12));
+    EXPECT_TRUE(solver.Solve(forces).isApprox(solution, 1e-6));
+    solver.KeepPreconditioner();
+    solver.Renew();
+    EXPECT_TRUE(solver.Solve(forces).isApprox(solution, 1e-6));
+  }
+}
+
 TEST(StiffnessSolver, TellsWhatItHolds) {
   const Scene scene = SmallScene("organ");
   const StiffnessSolver solver(scene.mesh, scene.supports,

@@ -91,5 +91,26 @@ TEST_F(SupportEndsTest, AreToBeFittedWhereSystemsAreSolvedByFactors) {
   EXPECT_FALSE(free.ChangeByHolding(free.OwnScene().supports.in_doubt, work));
 }
 
+TEST_F(SupportEndsTest, MinimumThatIsKeptIsEvaluatedAndFoundAgain) {
+  MeasureSpecimen(false);
+  SpaceFit fit(linear_, options_);
+  fit.Minimize(Descent::kReduced, {});
+  ASSERT_TRUE(fit.Fit().minimum);
+  const Eigen::VectorXd minimum = fit.Fit().minimum->variables;
+  const Eigen::VectorXd beside = minimum + Eigen::Vector2d(0.1, 0.05);
+  Eigen::VectorXd before;
+  ASSERT_TRUE(fit.Misfit().Evaluate(beside, &before, nullptr));
+  fit.KeepMinimum();
+  Eigen::VectorXd after;
+  const int factorizations = fit.Misfit().Model().WorkDone().factorizations;
+  ASSERT_TRUE(fit.Misfit().Evaluate(minimum, &after, nullptr));
+  ASSERT_TRUE(fit.Misfit().Evaluate(beside, &after, nullptr));
+  EXPECT_EQ(fit.Misfit().Model().WorkDone().factorizations, factorizations);
+  EXPECT_TRUE(after.isApprox(before, 1e-9));
+  fit.Minimize(Descent::kReduced, {});
+  ASSERT_TRUE(fit.Fit().minimum);
+  EXPECT_TRUE(fit.Fit().minimum->variables.isApprox(minimum, 1e-6));
+}
+
 }  // namespace
 }  // namespace elastimate
