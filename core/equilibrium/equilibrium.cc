@@ -7,6 +7,7 @@
 #include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/equilibrium/refined_stiffness.h"
 #include "elastimate/core/equilibrium/supported_stiffness.h"
+#include "elastimate/core/equilibrium/vertex_space.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -16,9 +17,15 @@ namespace elastimate {
 namespace {
 
 // The spaces in which systems are solved: all of them where they are nested,
-// else the finest.
-std::vector<const Scene*> UsedSpaces(const std::vector<const Scene*>& spaces) {
-  return AreNested(spaces) ? spaces : std::vector<const Scene*>{spaces.back()};
+// else the finest, with the space of its vertices if there is one.
+std::vector<const Scene*> UsedSpaces(const std::vector<const Scene*>& spaces,
+                                     const VertexSpace* vertices) {
+  if (AreNested(spaces)) {
+    return spaces;
+  }
+  return vertices == nullptr
+             ? std::vector<const Scene*>{spaces.back()}
+             : std::vector<const Scene*>{&vertices->scene, spaces.back()};
 }
 
 }  // namespace
@@ -29,20 +36,26 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
 Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
                          SolverKind solver, double tolerance,
                          const StiffnessSolver* shared)
-    : values_(std::make_unique<NestedStiffness>(UsedSpaces(spaces))),
+    : vertices_(AreNested(spaces)
+                    ? nullptr
+                    : VertexSpaceToSolveBy(*spaces.back(), solver)),
+      values_(std::make_unique<NestedStiffness>(
+          UsedSpaces(spaces, vertices_.get()))),
       mesh_(&spaces.back()->mesh),
       load_(AssembleLoadCases(*spaces.back())),
       has_unknown_motion_(HasUnknownMotion(*spaces.back())),
       tolerance_(IsRefined() ? tolerance : StiffnessSolver::kAccurate) {
   const Scene& scene = *spaces.back();
+  const std::vector<const Scene*> used = UsedSpaces(spaces, vertices_.get());
+  if (vertices_) {
+    shared = &vertices_->solver;
+  }
   const HeldGroups groups = GroupByHeld(scene);
   stiffness_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
     const bool is_like_shared =
-        shared != nullptr &&
-        shared->Holds(SupportsOf(*UsedSpaces(spaces).front(), k));
-    AddStiffness(UsedSpaces(spaces), k, solver,
-                 is_like_shared ? shared : nullptr);
+        shared != nullptr && shared->Holds(SupportsOf(*used.front(), k));
+    AddStiffness(used, k, solver, is_like_shared ? shared : nullptr);
     if (is_like_shared) {
       shared = nullptr;  // Two of them would factorise in turns.
     }
@@ -147,6 +160,7 @@ bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   // The moduli come in any unit.  The stiffness that is factorised is scaled to
   // moduli of at most 1.
+  moduli_ = moduli;
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
   directions_.resize(0, 0);
@@ -207,6 +221,15 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     for (Eigen::Index i = 0; i < n; i += at_a_time) {
       auto columns = sensitivities_.middleCols(n * k + i, at_a_time);
+      const std::optional<double> growth =
+          at_a_time == 1 ? GrowthAlong(directions.col(i)) : std::nullopt;
+      if (growth) {
+        columns = -*growth * displacement_.col(k);
+        if (support_response_.size() > 0) {
+          columns += *growth * support_response_.col(k);
+        }
+        continue;
+      }
       columns = -stiffness_[stiffness_of_case_[k]]->Solve(
           ForcesAlong(directions.middleCols(i, at_a_time) / scale_, k),
           has_start ? Eigen::MatrixXd(columns) : Eigen::MatrixXd());
@@ -214,6 +237,16 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   }
   directions_ = directions;
   return sensitivities_;
+}
+
+std::optional<double> Equilibrium::GrowthAlong(
+    const Eigen::VectorXd& direction) const {
+  constexpr double kRounding = 1e-14;
+  const double growth = direction.dot(moduli_) / moduli_.squaredNorm();
+  return !has_unknown_motion_ && (direction - growth * moduli_).norm() <=
+                                     kRounding * direction.norm()
+             ? std::optional<double>(growth)
+             : std::nullopt;
 }
 
 Eigen::MatrixXd Equilibrium::ForcesAlong(const Eigen::MatrixXd& directions,

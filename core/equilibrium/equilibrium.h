@@ -18,6 +18,7 @@ namespace elastimate {
 
 class NestedStiffness;
 class SupportedStiffness;
+struct VertexSpace;
 
 /// Equilibrium of small strains of the materials of a scene,
 ///
@@ -36,7 +37,9 @@ class SupportedStiffness;
 ///   }
 class Equilibrium : public ForwardModel {
  public:
-  /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
+  /// Assembles the pattern and analyses it.  Large quadratic meshes are solved
+  /// by iterations over the linear elements of their vertices
+  /// (VertexSpaceToSolveBy), as below.  Refers to `scene`, which has to
   /// stay as it is; a temporary one does not compile.  Preconditions and
   /// exceptions are those of StiffnessSolver.
   Equilibrium(const Scene& scene, SolverKind solver);
@@ -79,8 +82,8 @@ class Equilibrium : public ForwardModel {
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
   Eigen::MatrixXd SupportResponse() const { return OrZeros(support_response_); }
 
-  /// A pass and n solves for each load case, n passes where iterations solve;
-  /// nothing where the directions are
+  /// A pass and n solves for each load case, n passes where iterations solve,
+  /// which spare a direction in which all moduli grow alike; nothing where the directions are
   /// those of the last call and neither moduli nor supports have changed since,
   /// because searches within bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
@@ -165,6 +168,10 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd SolveFrom(const Eigen::MatrixXd& start,
                             const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
+  /// Returns the rate at which all moduli grow alike along this direction, and
+  /// displacements by loads shrink.  Empty where they do not grow alike, and
+  /// where motions are unknown.
+  std::optional<double> GrowthAlong(const Eigen::VectorXd& direction) const;
   /// Returns how the internal forces of the last displacement of load case `k`
   /// change along these directions of the moduli: a pass.
   Eigen::MatrixXd ForcesAlong(const Eigen::MatrixXd& directions,
@@ -176,6 +183,7 @@ class Equilibrium : public ForwardModel {
                : Eigen::MatrixXd::Zero(load_.rows(), load_.cols());
   }
 
+  std::unique_ptr<VertexSpace> vertices_;  ///< Mostly null.
   std::unique_ptr<NestedStiffness> values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
   const Mesh* mesh_;  ///< The finest one.
@@ -195,6 +203,7 @@ class Equilibrium : public ForwardModel {
   /// which are empty where the displacement has changed.
   Eigen::MatrixXd sensitivities_;
   Eigen::MatrixXd directions_;
+  Eigen::VectorXd moduli_;  ///< Of the last Solve.
   double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.
   bool has_unknown_motion_;
   double tolerance_;  ///< Of iterations.

@@ -3,7 +3,6 @@
 #include <variant>
 
 #include "elastimate/core/mesh/linear_mesh.h"
-#include "elastimate/core/scene/spread_loads.h"
 
 namespace elastimate {
 namespace {
@@ -56,10 +55,6 @@ Scene LinearScene(const Scene& scene) {
     }
   }
   for (LoadCase& load_case : linear.load_cases) {
-    if (scene.mesh.Order() == 1) {
-      load_case.loads =
-          SpreadLoads(scene.mesh, scene.supports.held, load_case.loads);
-    }
     for (Load& load : load_case.loads) {
       load = std::visit(LoadCutter{mesh}, load);
     }

@@ -127,12 +127,12 @@ std::vector<int> WithMiddleNodes(const std::vector<int>& nodes,
 }
 
 Supports WithMiddleSupports(const Supports& supports, const Mesh& mesh,
+                            const Eigen::MatrixXi& surface,
                             const Middles& middles) {
-  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
-  const std::vector<bool> crossing = CrossingMiddles(mesh, middles, facets);
+  const std::vector<bool> crossing = CrossingMiddles(mesh, middles, surface);
   ComponentMask held = OfAllVertices(supports.held, middles);
   const ComponentMask in_volume =
-      HeldInVolume(supports.held, mesh, middles, facets);
+      HeldInVolume(supports.held, mesh, middles, surface);
   for (Eigen::Index i = 0; i < middles.Size(); ++i) {
     if (crossing[i]) {
       held.col(i) = held.col(i) && in_volume.col(i);
@@ -230,11 +230,12 @@ struct LoadConverter {
 };
 
 LoadCase ToQuadratic(const LoadCase& load_case, const ComponentMask& held,
-                     const Mesh& mesh, const Middles& middles) {
+                     const Mesh& mesh, const Eigen::MatrixXi& surface,
+                     const Middles& middles) {
   LoadCase quadratic;
   quadratic.noise_sd = load_case.noise_sd;
   quadratic.points = load_case.points;
-  for (const Load& load : SpreadLoads(mesh, held, load_case.loads)) {
+  for (const Load& load : SpreadLoads(mesh, surface, held, load_case.loads)) {
     quadratic.loads.push_back(std::visit(LoadConverter{mesh, middles}, load));
   }
   const ComponentMask measured =
@@ -251,7 +252,8 @@ LoadCase ToQuadratic(const LoadCase& load_case, const ComponentMask& held,
     quadratic.displacement = WithMiddles(load_case.displacement, unknown);
   }
   if (load_case.supports) {
-    quadratic.supports = WithMiddleSupports(*load_case.supports, mesh, middles);
+    quadratic.supports =
+        WithMiddleSupports(*load_case.supports, mesh, surface, middles);
   }
   for (Resultant resultant : load_case.resultants) {
     resultant.nodes = WithMiddleNodes(resultant.nodes, mesh, middles,
@@ -270,18 +272,20 @@ Scene QuadraticScene(const Scene& scene) {
         "elements");
   }
   const Middles middles(scene.mesh);
+  const Eigen::MatrixXi surface = BoundaryFacets(scene.mesh);
   Scene quadratic;
   quadratic.mesh = WithMiddleNodes(scene.mesh, middles);
   quadratic.materials = scene.materials;
-  quadratic.supports = WithMiddleSupports(scene.supports, scene.mesh, middles);
+  quadratic.supports =
+      WithMiddleSupports(scene.supports, scene.mesh, surface, middles);
   quadratic.supports.in_doubt =
-      FindSupportEnds(scene.supports, scene.mesh, middles,
+      FindSupportEnds(scene.supports, scene.mesh, surface, middles,
                       quadratic.supports.held.rightCols(middles.Size()));
   quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;
   quadratic.origin = scene.origin;
   for (const LoadCase& load_case : scene.load_cases) {
-    quadratic.load_cases.push_back(
-        ToQuadratic(load_case, scene.supports.held, scene.mesh, middles));
+    quadratic.load_cases.push_back(ToQuadratic(load_case, scene.supports.held,
+                                               scene.mesh, surface, middles));
   }
   return quadratic;
 }

@@ -44,9 +44,8 @@ struct Cells {
   bool are_facets;
 };
 
-Cells CellsOf(const Mesh& mesh, const NodeMask& is_held,
-              const NodeMask& is_loaded) {
-  const Eigen::MatrixXi surface = BoundaryFacets(mesh);
+Cells CellsOf(const Mesh& mesh, const Eigen::MatrixXi& surface,
+              const NodeMask& is_held, const NodeMask& is_loaded) {
   if ((is_loaded || is_held).all() ||
       (is_loaded && IsInside(mesh, surface)).any()) {
     const std::vector<Eigen::Index> loaded =
@@ -136,9 +135,9 @@ Spread AsPressure(const Mesh& mesh, const Cells& cells,
   return spread;
 }
 
-std::vector<Load> SpreadOf(const Mesh& mesh, const NodeMask& is_held,
-                           const NodalForces& load) {
-  const Cells cells = CellsOf(mesh, is_held, LoadedNodes(load));
+std::vector<Load> SpreadOf(const Mesh& mesh, const Eigen::MatrixXi& surface,
+                           const NodeMask& is_held, const NodalForces& load) {
+  const Cells cells = CellsOf(mesh, surface, is_held, LoadedNodes(load));
   if (cells.nodes.cols() == 0) {
     return {load};
   }
@@ -158,13 +157,14 @@ std::vector<Load> SpreadOf(const Mesh& mesh, const NodeMask& is_held,
 
 }  // namespace
 
-std::vector<Load> SpreadLoads(const Mesh& mesh, const ComponentMask& held,
+std::vector<Load> SpreadLoads(const Mesh& mesh, const Eigen::MatrixXi& surface,
+                              const ComponentMask& held,
                               const std::vector<Load>& loads) {
   const NodeMask is_held = held.colwise().all().transpose();
   std::vector<Load> spread;
   for (const Load& load : loads) {
     if (const auto* const nodal = std::get_if<NodalForces>(&load)) {
-      for (Load& part : SpreadOf(mesh, is_held, *nodal)) {
+      for (Load& part : SpreadOf(mesh, surface, is_held, *nodal)) {
         spread.push_back(std::move(part));
       }
     } else {

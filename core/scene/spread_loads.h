@@ -25,9 +25,10 @@ namespace elastimate {
 /// exactly.  Forces on nodes that are no neighbours stay as they are, and so do
 /// other loads.
 ///
-/// Precondition: linear elements; `held` is dimension x num_nodes. O(num_nodes
-/// + num_elements) per load.
-std::vector<Load> SpreadLoads(const Mesh& mesh, const ComponentMask& held,
+/// Preconditions: linear elements; `surface` is BoundaryFacets of the mesh;
+/// `held` is dimension x num_nodes.  O(num_nodes + num_elements) per load.
+std::vector<Load> SpreadLoads(const Mesh& mesh, const Eigen::MatrixXi& surface,
+                              const ComponentMask& held,
                               const std::vector<Load>& loads);
 
 }  // namespace elastimate

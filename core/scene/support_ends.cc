@@ -22,8 +22,8 @@ bool IsToldByPlace(const Supports& supports, const Mesh& mesh, Eigen::Index i,
 // The facets of the surface of a mesh.
 class SurfaceFacets {
  public:
-  explicit SurfaceFacets(const Mesh& mesh)
-      : facets_(BoundaryFacets(mesh)),
+  SurfaceFacets(const Mesh& mesh, const Eigen::MatrixXi& facets)
+      : facets_(facets),
         normals_(UnitNormals(mesh, facets_)),
         of_node_(mesh.NumNodes()) {
     for (Eigen::Index facet = 0; facet < facets_.cols(); ++facet) {
@@ -48,7 +48,7 @@ class SurfaceFacets {
   }
 
  private:
-  Eigen::MatrixXi facets_;
+  const Eigen::MatrixXi& facets_;
   Eigen::MatrixXd normals_;
   std::vector<std::vector<Eigen::Index>> of_node_;
 };
@@ -57,7 +57,8 @@ class SurfaceFacets {
 class OpenMiddles {
  public:
   OpenMiddles(const Supports& supports, const Mesh& mesh,
-              const Middles& middles, const ComponentMask& held)
+              const Eigen::MatrixXi& facets, const Middles& middles,
+              const ComponentMask& held)
       : supports_(supports),
         mesh_(mesh),
         middles_(middles),
@@ -65,7 +66,7 @@ class OpenMiddles {
         open_(
             ComponentMask::Constant(mesh.Dimension(), middles.Size(), false)) {
     OpenInVolumes();
-    OpenOnSurface();
+    OpenOnSurface(facets);
   }
 
   const ComponentMask& Open() const { return open_; }
@@ -124,8 +125,8 @@ class OpenMiddles {
     }
   }
 
-  void OpenOnSurface() {
-    const SurfaceFacets surface(mesh_);
+  void OpenOnSurface(const Eigen::MatrixXi& facets) {
+    const SurfaceFacets surface(mesh_, facets);
     std::vector<int> around;
     for (Eigen::Index facet = 0; facet < surface.Facets().cols(); ++facet) {
       for (const auto& places : mesh_.Topology().middles_of_face) {
@@ -158,9 +159,10 @@ class OpenMiddles {
 
 std::vector<HeldComponent> FindSupportEnds(const Supports& supports,
                                            const Mesh& mesh,
+                                           const Eigen::MatrixXi& surface,
                                            const Middles& middles,
                                            const ComponentMask& held) {
-  const OpenMiddles open_middles(supports, mesh, middles, held);
+  const OpenMiddles open_middles(supports, mesh, surface, middles, held);
   std::vector<HeldComponent> in_doubt;
   for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
     for (Eigen::Index i = 0; i < mesh.Dimension(); ++i) {

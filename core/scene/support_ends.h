@@ -22,9 +22,10 @@ namespace elastimate {
 ///
 /// A held node or line, and a face held up to its creases, leave nothing in
 /// doubt.  The nodes of the result are those of QuadraticScene.
-/// O(num_elements).
+/// Precondition: `surface` is BoundaryFacets of the mesh.  O(num_elements).
 std::vector<HeldComponent> FindSupportEnds(const Supports& supports,
                                            const Mesh& mesh,
+                                           const Eigen::MatrixXi& surface,
                                            const Middles& middles,
                                            const ComponentMask& held);
 

@@ -107,7 +107,6 @@ class Iterations {
       TakeEigenvaluesOf(lanczos);
     }
     direction_.resize(0, 0);
-    product_.resize(0, 0);
     std::vector<Eigen::Index> left(columns_.size());
     std::iota(left.begin(), left.end(), Eigen::Index{0});
     PutIntoResult(left);
@@ -153,26 +152,22 @@ class Iterations {
     }
     Eigen::RowVectorXd share = Eigen::RowVectorXd::Zero(rz.cols());
     if (step > 0) {
-      share = -(length_.array() * ProductsOfColumns(z, product_).array() /
-                last_rz_.array())
-                   .matrix();
+      share = rz.cwiseQuotient(last_rz_);
       Scale(direction_, share);
       AddTo(direction_, z);
     } else {
       direction_ = std::move(z);
     }
-    // A column of a large mesh needs much memory.
-    z.resize(0, 0);
-    product_.resize(0, 0);
-    product_ = Multiply(direction_);
-    const Eigen::RowVectorXd energy = ProductsOfColumns(direction_, product_);
+    z.resize(0, 0);  // A column of a large mesh needs much memory.
+    const Eigen::MatrixXd product = Multiply(direction_);
+    const Eigen::RowVectorXd energy = ProductsOfColumns(direction_, product);
     if (!(energy.array() > 0).all() || !energy.allFinite()) {
       return false;
     }
     length_ = rz.cwiseQuotient(energy);
     last_rz_ = rz;
     AddTo(x_, direction_, length_);
-    AddTo(residual_, product_, -length_);
+    AddTo(residual_, product, -length_);
     energy_ += length_.cwiseProduct(rz);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       lanczos_[k].Add(length_(Eigen::Index(k)), share(Eigen::Index(k)));
@@ -227,8 +222,7 @@ class Iterations {
       return;
     }
     PutIntoResult(done);
-    for (Eigen::MatrixXd* const matrix :
-         {&x_, &residual_, &direction_, &product_, &z}) {
+    for (Eigen::MatrixXd* const matrix : {&x_, &residual_, &direction_, &z}) {
       if (matrix->cols() > 0) {
         KeepColumns(kept, *matrix);
       }
@@ -257,7 +251,6 @@ class Iterations {
   Eigen::MatrixXd x_;
   Eigen::MatrixXd residual_;
   Eigen::MatrixXd direction_;
-  Eigen::MatrixXd product_;  // With the direction.
   Eigen::RowVectorXd length_;
   Eigen::RowVectorXd last_rz_;
   /// The squared energy norm of the solution as far as it is known, which the

@@ -35,8 +35,8 @@ struct ConjugateGradientResult {
 };
 
 /// Solves A x = b for each column b of `right_hand_sides` by conjugate
-/// gradients that are preconditioned by M, which may change a little from one
-/// call to the next [Notay, SIAM J. Sci. Comput. 22 (2000) 1444].
+/// gradients that are preconditioned by M [Saad, Iterative Methods for Sparse
+/// Linear Systems, algorithm 9.1].
 ///
 /// All columns that are not done share the calls of `multiply` (A) and
 /// `precondition` (M).  Both have to be symmetric and positive definite, and M

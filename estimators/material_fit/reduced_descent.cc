@@ -122,6 +122,11 @@ bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
           reduced_.Displacement(),
           reduced_.DisplacementSensitivities(free.ModuliJacobian(x)));
     }
+    // The new pole is nearer to the minimum, and as many vectors of a large
+    // mesh need much memory.
+    if (model.IsRefined()) {
+      reduced_.ForgetBases();
+    }
     if (!misfit_.Factorize(x)) {
       return false;
     }

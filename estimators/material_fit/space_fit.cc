@@ -97,7 +97,6 @@ SpaceFit::SpaceFit(Scene scene, const EstimatorOptions& options,
                    const StiffnessSolver* shared)
     : options_(options),
       scene_(std::move(scene)),
-      is_finest_of_several_(!coarser.empty()),
       misfit_(WithFinest(coarser, scene_), options, shared) {}
 
 void SpaceFit::Measure(const Scene& scene, Rows rows,
@@ -121,6 +120,7 @@ void SpaceFit::Measure(const Scene& scene, Rows rows,
 
 void SpaceFit::KeepMinimum() {
   if (certified_) {
+    misfit_.ForgetPlaced();
     certified_->KeepModel();
   }
 }
@@ -166,8 +166,8 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                  : BestMinimum(scene_, options_, misfit_, fit_.estimate);
   }
   // Once there is a certificate, no start is needed.
-  if (certified_ ||
-      (!start && !is_finest_of_several_ && CertifiedDescent::Takes(scene_))) {
+  if (certified_ || (!start && !misfit_.SmallStrainModel().IsRefined() &&
+                     CertifiedDescent::Takes(scene_))) {
     if (!certified_) {
       certified_.emplace(scene_, options_, misfit_);
       misfit_.SetNeighbours(certified_->Graph());
@@ -306,6 +306,12 @@ void SpaceFit::Minimize(Descent descent,
   }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   estimate.work = estimate.work + (WorkDone() - before);
+  // A certificate would cost factors of the finest space.
+  if (!start && fit_.minimum && options_.loss == Loss::kNone &&
+      !misfit_.HasLargeStrains() && misfit_.SmallStrainModel().IsRefined() &&
+      CertifiedDescent::Takes(scene_)) {
+    MinimizeAcrossRange(descent);
+  }
 }
 
 void SpaceFit::MinimizeAcrossRange(Descent descent) {

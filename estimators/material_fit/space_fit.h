@@ -149,7 +149,6 @@ class SpaceFit {
 
   const EstimatorOptions& options_;
   Scene scene_;
-  bool is_finest_of_several_;
   DisplacementMisfit misfit_;
   /// Empty before it is asked for, and where there is no certificate.
   std::optional<CertifiedDescent> certified_;

@@ -229,6 +229,13 @@ void DisplacementMisfit::ForgetSolution() {
   }
 }
 
+void DisplacementMisfit::ForgetPlaced() {
+  if (placed_) {
+    placed_.reset();
+    x_.resize(0);
+  }
+}
+
 void DisplacementMisfit::Place(const Eigen::VectorXd& x,
                                Eigen::MatrixXd displacement,
                                Eigen::MatrixXd sensitivities) {

@@ -121,6 +121,9 @@ class DisplacementMisfit {
   /// factor stays.  Precondition: small strains.
   void ForgetSolution();
 
+  /// Gives back the memory of what was placed.
+  void ForgetPlaced();
+
   /// Returns u and, side by side for each load case, du/dx at x as Place takes
   /// them, and solves only where it has to.  False when the stiffness is
   /// singular there.

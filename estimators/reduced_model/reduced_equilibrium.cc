@@ -39,11 +39,9 @@ ReducedEquilibrium::ReducedEquilibrium(const Equilibrium& full,
       load_case.held_columns = forces_.Columns(load_case.held);
       ++element_passes_;
     }
-    load_case.basis.resize(load_.rows(), 0);
-    load_case.of_moduli.resize(0, 0);
-    load_case.held_load.resize(0, NumModuli());
     cases_.push_back(load_case);
   }
+  ForgetBases();
 }
 
 Eigen::MatrixXd ReducedEquilibrium::StiffnessOf(
@@ -255,7 +253,9 @@ Eigen::MatrixXd ReducedEquilibrium::Adjoint() {
 
 void ReducedEquilibrium::ForgetBases() {
   for (LoadCase& load_case : cases_) {
-    load_case.basis.resize(0, 0);
+    load_case.basis.resize(load_.rows(), 0);
+    load_case.of_moduli.resize(0, 0);
+    load_case.held_load.resize(0, NumModuli());
   }
 }
 

@@ -58,8 +58,8 @@ class ReducedEquilibrium {
   /// The largest ||P v|| / ||v||, in the energy norm, over the bases.
   double ComplianceNorm() const;
 
-  /// Gives back the memory of the bases; what has num_dofs rows cannot be asked
-  /// for any more.
+  /// Gives back the memory of the bases, which are empty then, as before the
+  /// first Extend.
   void ForgetBases();
 
   int ElementPasses() const { return element_passes_; }

@@ -100,8 +100,8 @@ TEST(SpreadLoads, KeepsTheNodalForces) {
         load.force.col(i).setZero();
       }
     }
-    const std::vector<Load> spread =
-        SpreadLoads(scene.mesh, scene.supports.held, {load});
+    const std::vector<Load> spread = SpreadLoads(
+        scene.mesh, BoundaryFacets(scene.mesh), scene.supports.held, {load});
     EXPECT_LT((AssembleLoads(scene.mesh, spread) - load.force).norm(),
               1e-12 * load.force.norm())
         << share;
@@ -113,8 +113,8 @@ TEST(SpreadLoads, LeavesPointForcesAndOtherLoads) {
   NodalForces load{Eigen::MatrixXd::Zero(3, scene.mesh.NumNodes())};
   load.force.rightCols(1).setConstant(2);
   const std::vector<Load> loads = {BodyForce{Eigen::Vector3d(1, 2, 3)}, load};
-  const std::vector<Load> spread =
-      SpreadLoads(scene.mesh, scene.supports.held, loads);
+  const std::vector<Load> spread = SpreadLoads(
+      scene.mesh, BoundaryFacets(scene.mesh), scene.supports.held, loads);
   ASSERT_EQ(spread.size(), 2);
   EXPECT_TRUE(std::holds_alternative<BodyForce>(spread[0]));
   EXPECT_EQ(std::get<NodalForces>(spread[1]).force, load.force);
