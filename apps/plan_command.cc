@@ -133,6 +133,17 @@ void TakeNoiseFrom(const Estimate& estimate, Scene& before, PlanBasis& basis) {
   }
 }
 
+void TakeErrorsFrom(const Estimate& estimate, PlanBasis& basis) {
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (estimate.IsUsable() && !parameter.is_known) {
+      basis.errors_of_estimate.push_back(parameter.standard_error
+                                             ? *parameter.standard_error /
+                                                   parameter.ErrorUnit()
+                                             : Estimate::kUnknown);
+    }
+  }
+}
+
 // Returns the parameters of the flags, of the measurement, or typical ones.
 Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
                                  PlanBasis& basis) {
@@ -143,6 +154,7 @@ Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
     const Estimate estimate =
         MakeEstimator("iterative-fe")->Run(before, options);
     TakeNoiseFrom(estimate, before, basis);
+    TakeErrorsFrom(estimate, basis);
     if (!AreParametersGiven() && estimate.IsUsable() &&
         ArePhysical(before, estimate)) {
       basis.parameters = "estimate";

@@ -34,18 +34,36 @@ std::string WorstText(const ExpectedErrors& errors,
              : worst;
 }
 
+std::string ColumnsOfErrors(const std::vector<double>& errors,
+                            const std::vector<ParameterEstimate>& free) {
+  std::string columns;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    columns +=
+        Padded(ErrorText(errors[i], free[i].IsStiffness()), kWidthOfColumn);
+  }
+  return columns;
+}
+
 std::string Row(const std::string& name, const ExpectedErrors& errors,
                 const std::vector<ParameterEstimate>& free) {
   std::string row = Padded(name, kWidthOfName);
   if (free.size() <= kMostColumns) {
     const Eigen::VectorXd of_parameters = errors.OfParameters();
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      row += Padded(
-          ErrorText(of_parameters(Eigen::Index(i)), free[i].IsStiffness()),
-          kWidthOfColumn);
-    }
+    row += ColumnsOfErrors({of_parameters.begin(), of_parameters.end()}, free);
   }
   return row + WorstText(errors, free);
+}
+
+// Returns what the errors of all causes are in the estimate of the load cases
+// before.
+std::string RowOfEstimate(const PlanBasis& basis,
+                          const std::vector<ParameterEstimate>& free) {
+  if (basis.errors_of_estimate.size() != free.size() ||
+      free.size() > kMostColumns) {
+    return "";
+  }
+  return Padded("before, all errors", kWidthOfName) +
+         ColumnsOfErrors(basis.errors_of_estimate, free) + "of the estimate\n";
 }
 
 std::string Heading(const std::vector<ParameterEstimate>& free) {
@@ -107,8 +125,12 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
   std::string text = Padded("before", kWidthOfName) + LoadCasesText(basis) +
                      "\n" + Padded("parameters", kWidthOfName) +
                      ParametersText(plan, basis) + "\n" +
-                     Padded("noise", kWidthOfName) + NoiseText(basis) + "\n\n" +
-                     Heading(free) + Row("before", plan.before, free) + "\n";
+                     Padded("noise", kWidthOfName) + NoiseText(basis) + "\n" +
+                     Padded("errors", kWidthOfName) +
+                     "those of noise; an estimate also has errors of the mesh, "
+                     "the supports and the model\n\n" +
+                     Heading(free) + Row("before", plan.before, free) + "\n" +
+                     RowOfEstimate(basis, free);
   for (const PlannedLoad& load : plan.loads) {
     text += Row("+ " + candidates[load.candidate].name, load.errors, free) +
             (load.factor ? "\n" : " (moves nothing that is observed)\n");

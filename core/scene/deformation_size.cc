@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -24,6 +23,9 @@ constexpr int kLargestDegree = 4;
 // So many observed values are needed for each coefficient of a polynomial, so
 // that noise is smoothed.
 constexpr Eigen::Index kValuesPerMonomial = 4;
+// An affine function amplifies noise least, and without it large strains of few
+// points would count as none.
+constexpr Eigen::Index kValuesPerAffineMonomial = 2;
 // Points on a surface make the polynomials dependent.  Polynomials that are
 // dependent to within this share, though not to within rounding, still amplify
 // noise.
@@ -143,48 +145,129 @@ struct Frame {
   Eigen::VectorXd scale;
 };
 
-// Returns the gradients of the polynomials of least squares, dimension x
-// num_points for each component; none where there are too few values.
-std::vector<Eigen::MatrixXd> GradientsAt(const Frame& frame,
-                                         const Observed& observed,
-                                         const Eigen::MatrixXd& points) {
-  const Eigen::Index dimension = points.rows();
-  int degree = kLargestDegree;
-  std::vector<Eigen::Array3i> exponents = ExponentsUpTo(degree, dimension);
-  while (degree > 0 && kValuesPerMonomial * Eigen::Index(exponents.size()) >
-                           observed.values.rows()) {
-    exponents = ExponentsUpTo(--degree, dimension);
-  }
-  if (degree == 0) {
-    return {};
-  }
-  const auto num_monomials = Eigen::Index(exponents.size());
-  const Eigen::MatrixXd x = frame.Coordinates(observed.positions);
-  Eigen::MatrixXd monomials(x.cols(), num_monomials);
-  for (Eigen::Index m = 0; m < num_monomials; ++m) {
+// Returns the monomials of the coordinates at these positions, num_positions x
+// num_monomials.
+Eigen::MatrixXd MonomialsAt(const Frame& frame,
+                            const std::vector<Eigen::Array3i>& exponents,
+                            const Eigen::MatrixXd& positions) {
+  const Eigen::MatrixXd x = frame.Coordinates(positions);
+  Eigen::MatrixXd monomials(x.cols(), Eigen::Index(exponents.size()));
+  for (Eigen::Index m = 0; m < monomials.cols(); ++m) {
     monomials.col(m) = Powers(x, exponents[m]);
   }
-  const Eigen::MatrixXd coefficients =
-      SolveLeastSquares(monomials, observed.values, kDependent);
-  const Eigen::MatrixXd at = frame.Coordinates(points);
-  std::vector<Eigen::MatrixXd> gradients(
-      observed.components.size(),
-      Eigen::MatrixXd::Zero(dimension, points.cols()));
-  for (Eigen::Index m = 0; m < num_monomials; ++m) {
-    for (Eigen::Index j = 0; j < dimension; ++j) {
-      const int power = exponents[m](j);
-      if (power == 0) {
-        continue;
-      }
-      Eigen::Array3i lower = exponents[m];
-      --lower(j);
-      const Eigen::RowVectorXd slope =
-          power / frame.scale(j) * Powers(at, lower).matrix().transpose();
-      for (std::size_t i = 0; i < gradients.size(); ++i) {
-        gradients[i].row(j) += coefficients(m, Eigen::Index(i)) * slope;
-      }
+  return monomials;
+}
+
+// Returns the derivatives of the monomials by coordinate `j`, num_positions x
+// num_monomials.
+Eigen::MatrixXd SlopesAt(const Frame& frame,
+                         const std::vector<Eigen::Array3i>& exponents,
+                         Eigen::Index j, const Eigen::MatrixXd& positions) {
+  const Eigen::MatrixXd x = frame.Coordinates(positions);
+  Eigen::MatrixXd slopes =
+      Eigen::MatrixXd::Zero(x.cols(), Eigen::Index(exponents.size()));
+  for (Eigen::Index m = 0; m < slopes.cols(); ++m) {
+    Eigen::Array3i lower = exponents[m];
+    const int power = lower(j)--;
+    if (power > 0) {
+      slopes.col(m) = power / frame.scale(j) * Powers(x, lower);
     }
   }
+  return slopes;
+}
+
+// Returns the monomials that so many values determine; none where the values
+// are too few.
+std::vector<Eigen::Array3i> MonomialsFor(Eigen::Index num_values,
+                                         Eigen::Index dimension) {
+  for (int degree = kLargestDegree; degree > 0; --degree) {
+    const std::vector<Eigen::Array3i> exponents =
+        ExponentsUpTo(degree, dimension);
+    const Eigen::Index needed =
+        degree == 1 ? kValuesPerAffineMonomial : kValuesPerMonomial;
+    if (needed * Eigen::Index(exponents.size()) <= num_values) {
+      return exponents;
+    }
+  }
+  return {};
+}
+
+// The gradients of the polynomials of least squares.
+struct Gradients {
+  // Dimension x num_points for each component; none where there are too few
+  // values.
+  std::vector<Eigen::MatrixXd> of_components;
+  // The products of slopes along each pair of coordinates that noise makes:
+  // the mean of all points, and the sum of all components.
+  Eigen::MatrixXd noise;
+};
+
+// Returns the covariance of coefficients of least squares for noise of variance
+// 1.  Coefficients of dependent monomials are zero, and have none.
+Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& coefficients,
+                             const Eigen::MatrixXd& monomials) {
+  std::vector<Eigen::Index> independent;
+  for (Eigen::Index m = 0; m < monomials.cols(); ++m) {
+    if (!coefficients.row(m).isZero(0)) {
+      independent.push_back(m);
+    }
+  }
+  Eigen::MatrixXd covariance =
+      Eigen::MatrixXd::Zero(monomials.cols(), monomials.cols());
+  if (independent.empty()) {
+    return covariance;  // Nothing moves.
+  }
+  const Eigen::MatrixXd columns = monomials(Eigen::all, independent);
+  covariance(independent, independent) = Inverse(columns.transpose() * columns);
+  return covariance;
+}
+
+// Returns the mean over all points of the products of slopes along each pair of
+// coordinates that noise of variance 1 makes.
+Eigen::MatrixXd MeanProducts(const std::vector<Eigen::MatrixXd>& slopes,
+                             const Eigen::MatrixXd& covariance) {
+  const auto dimension = Eigen::Index(slopes.size());
+  Eigen::MatrixXd products(dimension, dimension);
+  for (Eigen::Index j = 0; j < dimension; ++j) {
+    const Eigen::MatrixXd weighted = slopes[j] * covariance;
+    for (Eigen::Index k = 0; k < dimension; ++k) {
+      products(j, k) = weighted.cwiseProduct(slopes[k]).sum() /
+                       static_cast<double>(weighted.rows());
+    }
+  }
+  return products;
+}
+
+Gradients GradientsAt(const Frame& frame, const Observed& observed,
+                      const Eigen::MatrixXd& points) {
+  const Eigen::Index dimension = points.rows();
+  const Eigen::Index num_values = observed.values.rows();
+  const std::vector<Eigen::Array3i> exponents =
+      MonomialsFor(num_values, dimension);
+  if (exponents.empty()) {
+    return {};
+  }
+  const Eigen::MatrixXd monomials =
+      MonomialsAt(frame, exponents, observed.positions);
+  const Eigen::MatrixXd coefficients =
+      SolveLeastSquares(monomials, observed.values, kDependent);
+  std::vector<Eigen::MatrixXd> slopes;
+  Gradients gradients;
+  gradients.of_components.assign(
+      observed.components.size(),
+      Eigen::MatrixXd::Zero(dimension, points.cols()));
+  for (Eigen::Index j = 0; j < dimension; ++j) {
+    slopes.push_back(SlopesAt(frame, exponents, j, points));
+    for (std::size_t i = 0; i < gradients.of_components.size(); ++i) {
+      gradients.of_components[i].row(j) =
+          (slopes[j] * coefficients.col(Eigen::Index(i))).transpose();
+    }
+  }
+  const double noise =
+      (observed.values - monomials * coefficients).squaredNorm() /
+      static_cast<double>(num_values - monomials.cols());
+  gradients.noise =
+      noise * MeanProducts(slopes, CovarianceOf(coefficients, monomials));
   return gradients;
 }
 
@@ -283,11 +366,18 @@ Eigen::MatrixXd PointsOfTheVolume(const Scene& scene, const LoadCase& load_case,
                      scene.mesh.nodes);
 }
 
-// Returns the normal of the plane in which all places lie; empty where there is
-// none, and where the body is not thin along it, as a block that is seen from
-// above: then its inside may do something else than its face.
-std::optional<Eigen::Vector3d> NormalOfPlane(const std::vector<Observed>& all,
-                                             const Mesh& mesh) {
+// The places of all components.
+struct LeastDirection {
+  // The direction along which they extend least.
+  Eigen::Vector3d normal;
+  // Whether they lie in a plane, and the body is thin along its normal.  The
+  // inside of a block that is seen from above may do something else than its
+  // face.
+  bool is_of_thin_plane;
+};
+
+LeastDirection LeastDirectionOf(const std::vector<Observed>& all,
+                                const Mesh& mesh) {
   constexpr double kFlat = 1e-4;  // Of the largest extent.
   constexpr double kThin = 0.15;  // Of the longer extent of the places.
   Eigen::Index count = 0;
@@ -314,20 +404,38 @@ std::optional<Eigen::Vector3d> NormalOfPlane(const std::vector<Observed>& all,
     longest = std::max(longest,
                        extent_along(axes.vectors.col(2), observed.positions));
   }
-  return axes.values(0) < kFlat * kFlat * axes.values(2) &&
-                 extent_along(normal, mesh.nodes) < kThin * longest
-             ? std::optional<Eigen::Vector3d>(normal)
-             : std::nullopt;
+  return {normal, axes.values(0) < kFlat * kFlat * axes.values(2) &&
+                      extent_along(normal, mesh.nodes) < kThin * longest};
 }
 
-// What is observed in a plane says nothing of its normal, which is taken to
-// stay a unit normal of the deformed plane.
-void CompleteByNormal(const Eigen::Vector3d& normal, Eigen::MatrixXd& f) {
+// Takes the normal to stay a unit normal of the deformed plane.
+Eigen::MatrixXd WithNormal(const Eigen::Vector3d& normal,
+                           const Eigen::MatrixXd& f) {
   const Eigen::Vector3d first = normal.unitOrthogonal();
   const Eigen::Vector3d second = normal.cross(first);
   const Eigen::Vector3d deformed =
       Eigen::Vector3d(f * first).cross(Eigen::Vector3d(f * second));
-  f += (deformed.normalized() - f * normal) * normal.transpose();
+  return f + (deformed.normalized() - f * normal) * normal.transpose();
+}
+
+// Completes the gradients along the direction in which the places extend least,
+// where these say nothing of it, or nothing that noise could not say as well.
+void CompleteAlongNormal(const LeastDirection& least,
+                         const Eigen::Matrix3d& noise,
+                         std::vector<Eigen::MatrixXd>& gradients) {
+  constexpr double kSignificant = 3;  // Standard deviations.
+  std::vector<Eigen::MatrixXd> completed;
+  double square_sum = 0;
+  for (const Eigen::MatrixXd& f : gradients) {
+    completed.push_back(WithNormal(least.normal, f));
+    square_sum += ((f - completed.back()) * least.normal).squaredNorm();
+  }
+  const double of_noise = least.normal.dot(noise * least.normal);
+  if (least.is_of_thin_plane ||
+      square_sum < kSignificant * kSignificant * of_noise *
+                       static_cast<double>(gradients.size())) {
+    gradients = completed;
+  }
 }
 
 // Returns F at points of the volume; empty where too little was observed.
@@ -340,6 +448,7 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
           ? Eigen::MatrixXd(dimension, 0)
           : Interpolate(scene.mesh, load_case.points.points, scene.mesh.nodes);
   std::vector<Eigen::MatrixXd> gradients;
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(dimension, dimension);
   Eigen::MatrixXd at;
   const std::vector<Observed> observed_values =
       ObservedValues(scene.mesh, load_case, points);
@@ -350,24 +459,21 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
       gradients.assign(static_cast<std::size_t>(at.cols()),
                        Eigen::MatrixXd::Identity(dimension, dimension));
     }
-    const std::vector<Eigen::MatrixXd> of_components =
-        GradientsAt(frame, observed, at);
-    if (of_components.empty()) {
+    const Gradients own = GradientsAt(frame, observed, at);
+    if (own.of_components.empty()) {
       return {};
     }
-    for (std::size_t c = 0; c < of_components.size(); ++c) {
+    for (std::size_t c = 0; c < own.of_components.size(); ++c) {
       for (Eigen::Index i = 0; i < at.cols(); ++i) {
         gradients[i].row(observed.components[c]) +=
-            of_components[c].col(i).transpose();
+            own.of_components[c].col(i).transpose();
       }
     }
+    noise += own.noise;
   }
   if (dimension == 3) {
-    if (const auto normal = NormalOfPlane(observed_values, scene.mesh)) {
-      for (Eigen::MatrixXd& f : gradients) {
-        CompleteByNormal(*normal, f);
-      }
-    }
+    CompleteAlongNormal(LeastDirectionOf(observed_values, scene.mesh), noise,
+                        gradients);
   }
   return gradients;
 }

@@ -70,6 +70,7 @@ struct ParameterEstimate {
 struct ModulusEstimate {
   double value;           ///< [pressure]
   double standard_error;  ///< [pressure]
+  double of_noise = 0;    ///< The part of the standard error that noise makes.
 
   double RelativeError() const { return standard_error / value; }
   /// Whether its standard error is small enough to be of use (Limits).

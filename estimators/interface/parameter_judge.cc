@@ -370,8 +370,9 @@ void JudgeNearnessOfLimits(Estimate& estimate) {
   if (near.empty()) {
     return;
   }
-  // The balance of virtual work has spurious minima there.
-  if (estimate.displacement_residual) {
+  // The balance of virtual work has spurious minima there.  Those of the frames
+  // of a series are left out already.
+  if (estimate.displacement_residual || estimate.series) {
     estimate.Add(ParametersNearLimits(near, Severity::kWarning));
   } else {
     estimate.Fail(ParametersNearLimits(near, Severity::kError));

@@ -104,8 +104,10 @@ ModulusEstimate ShearModulusOf(const std::vector<Estimate>& fits) {
   const auto [least, most] =
       std::minmax_element(logarithms.begin(), logarithms.end());
   const double value = std::exp((*least + *most) / 2);
-  return {value, value * std::hypot((*most - *least) / 2,
-                                    RelativeError(LeastCertain(fits)))};
+  const Estimate& fit = LeastCertain(fits);
+  const ParameterErrors& noise = fit.error_budget.noise;
+  return {value, value * std::hypot((*most - *least) / 2, RelativeError(fit)),
+          value * (noise.size() == 0 ? 0 : noise(0))};
 }
 
 // Returns errors of E and nu that reach to the fit whose nu is furthest.

@@ -106,8 +106,8 @@ LoadPlan PlanLoads(const Scene& scene,
                    const std::vector<CandidateLoad>& candidates,
                    const Eigen::VectorXd& parameters, double relative_noise,
                    SolverKind solver) {
-  SizedLoads sized =
-      SizeLoads(scene, candidates, parameters, relative_noise, solver);
+  SizedLoads sized = SizeLoads(scene, candidates, parameters, relative_noise,
+                               solver, PlannedElements::kOfFits);
   LoadPlan plan;
   const MaterialParameters of_scene = ParametersOf(scene);
   const Eigen::VectorXd units = of_scene.UnitsOfErrors(parameters);

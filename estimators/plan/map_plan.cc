@@ -53,7 +53,7 @@ MapPlan PlanMap(const Scene& scene,
       OfElements(scene, elasticity.poisson_ratio), candidates,
       Eigen::Vector2d(elasticity.youngs_modulus, elasticity.poisson_ratio)
           .replicate(n, 1),
-      relative_noise, solver);
+      relative_noise, solver, PlannedElements::kOfMesh);
   const FieldPrior prior(scene.mesh);
   MapPlan plan = {SupportedParameters(sized.known, prior), {}};
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/plan/expected_information.h"
@@ -57,12 +58,15 @@ void RequireLoads(const Scene& scene) {
 }
 
 // The load cases of the scene, and behind them the candidates.
-Scene WithCandidates(Scene scene,
-                     const std::vector<CandidateLoad>& candidates) {
+Scene WithCandidates(Scene scene, const std::vector<CandidateLoad>& candidates,
+                     PlannedElements elements) {
   for (const CandidateLoad& candidate : candidates) {
     scene.load_cases.push_back(candidate.load_case);
   }
-  return scene;
+  return elements == PlannedElements::kOfFits &&
+                 scene.origin == Origin::kMeasured && scene.mesh.Order() == 1
+             ? FinerScene(scene)
+             : scene;
 }
 
 double RmsOfScene(const std::vector<CaseInformation>& cases,
@@ -95,14 +99,14 @@ SizedCandidate AtItsSize(const CandidateLoad& candidate,
 SizedLoads SizeLoads(const Scene& scene,
                      const std::vector<CandidateLoad>& candidates,
                      const Eigen::VectorXd& parameters, double relative_noise,
-                     SolverKind solver) {
+                     SolverKind solver, PlannedElements elements) {
   ValidateScene(scene);
   CheckPlan(scene, candidates, parameters, relative_noise);
   RequireLoads(scene);
   const std::size_t num_cases = scene.load_cases.size();
   const std::vector<CaseInformation> cases =
-      ExpectedInformation(WithCandidates(scene, candidates), num_cases,
-                          parameters, relative_noise, solver);
+      ExpectedInformation(WithCandidates(scene, candidates, elements),
+                          num_cases, parameters, relative_noise, solver);
   const double rms_of_scene = RmsOfScene(cases, num_cases);
   if (!(rms_of_scene > 0)) {
     throw std::invalid_argument(

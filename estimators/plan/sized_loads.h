@@ -24,12 +24,17 @@ struct SizedLoads {
   std::vector<SizedCandidate> candidates;
 };
 
+/// The elements of a plan: those of the mesh, or quadratic ones in place of
+/// linear ones where displacements are to be measured, as in fits.
+enum class PlannedElements { kOfMesh, kOfFits };
+
 /// Returns the expected information at the size that candidates are taken at;
 /// preconditions, exceptions and cost are those of PlanLoads.
 [[nodiscard]] SizedLoads SizeLoads(const Scene& scene,
                                    const std::vector<CandidateLoad>& candidates,
                                    const Eigen::VectorXd& parameters,
-                                   double relative_noise, SolverKind solver);
+                                   double relative_noise, SolverKind solver,
+                                   PlannedElements elements);
 
 }  // namespace elastimate
 

@@ -101,7 +101,7 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
                              const LoadError& load_error) {
   const Estimate& estimate = frame.estimate;
   const Eigen::VectorXi free = FreeParametersOf(estimate);
-  // What is determined is then no parameter that could be averaged.
+  // Neither E nor nu is then a value that could be averaged.
   const bool is_shear_modulus_alone =
       estimate.shear_modulus && !estimate.parameters[0].IsDetermined();
   if (!estimate.IsUsable() || is_shear_modulus_alone || free.size() == 0 ||
@@ -550,26 +550,18 @@ void AddFindings(const std::vector<UsedFrame>& used, const Scatter& scatter,
   }
 }
 
-}  // namespace
-
-Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
-                       const Estimator& estimator,
-                       const std::vector<FrameEstimate>& frames,
-                       const LoadError& load_error) {
+// Joins frames of the same parameters; fails where no frame can be used.
+Estimate Join(const std::vector<FrameEstimate>& frames,
+              const LoadError& load_error) {
   std::vector<UsedFrame> used = UsedOf(frames, load_error);
   Estimate joint;
-  EnterWork(frames, joint);
   joint.series =
       SeriesSummary{frames.size(), used.size(), LoadsOf(used), std::nullopt};
-  joint.estimator = estimator.Name();
   if (used.empty()) {
     const Estimate& first = frames.front().estimate;
-    joint.Fail(NoFrameUsable(
-        frames.size(),
-        first.shear_modulus
-            ? "the frames determine the shear modulus alone, each for itself"
-        : first.message.empty() ? first.why_no_standard_error
-                                : first.message));
+    joint.Fail(NoFrameUsable(frames.size(), first.message.empty()
+                                                ? first.why_no_standard_error
+                                                : first.message));
     return joint;
   }
   ShareNoiseOfFewDegreesOfFreedom(used);
@@ -589,15 +581,104 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   EnterCommonErrors(used, free, joint);
   const Mean mean = MeanOf(used, WeightsOfFrames(usual, used));
   EnterMean(mean, free, load_error.relative, joint);
-  if (IsOneIsotropicMaterial(scene.materials)) {
-    const ParameterErrors& by_elements = joint.error_budget.discretization;
-    joint.discretization_error = IfFinite(by_elements(0));
-    joint.poisson_ratio_discretization_error = IfFinite(by_elements(1));
-  }
   joint.noise_sd = MeanNoise(used);
   joint.series->trend =
       TrendOver(used, free, Eigen::Index(joint.parameters.size()));
   AddFindings(used, mean.scatter, likeness, free, joint);
+  return joint;
+}
+
+// Whether most of the usable frames determine the shear modulus alone.
+bool IsOfShearModulus(const std::vector<FrameEstimate>& frames) {
+  const auto is_usable = [](const FrameEstimate& frame) {
+    return frame.estimate.IsUsable();
+  };
+  const auto is_of_it = [](const FrameEstimate& frame) {
+    return frame.estimate.IsUsable() && frame.estimate.shear_modulus;
+  };
+  return 2 * std::count_if(frames.begin(), frames.end(), is_of_it) >
+         std::count_if(frames.begin(), frames.end(), is_usable);
+}
+
+// Returns a frame whose only parameter is the shear modulus; one that is not
+// usable where there is none.
+FrameEstimate FrameOfShearModulus(const FrameEstimate& frame) {
+  FrameEstimate of_it = {frame.load, {}, frame.likeness, frame.num_alike};
+  const Estimate& estimate = frame.estimate;
+  if (!estimate.IsUsable() || !estimate.shear_modulus) {
+    return of_it;
+  }
+  const ModulusEstimate& modulus = *estimate.shear_modulus;
+  of_it.estimate.Accept();
+  of_it.estimate.element_order = estimate.element_order;
+  of_it.estimate.findings = estimate.findings;
+  of_it.estimate.noise_sd = estimate.noise_sd;
+  of_it.estimate.noise_degrees_of_freedom = estimate.noise_degrees_of_freedom;
+  of_it.estimate.deformation = estimate.deformation;
+  ParameterEstimate parameter;
+  parameter.name = "shear_modulus";
+  parameter.symbol = "mu";
+  parameter.is_modulus = true;
+  parameter.value = modulus.value;
+  of_it.estimate.parameters = {parameter};
+  of_it.estimate.parameter_covariance.setConstant(
+      1, 1, std::pow(modulus.standard_error, 2));
+  of_it.estimate.error_budget.noise =
+      Eigen::VectorXd::Constant(1, modulus.of_noise / modulus.value);
+  return of_it;
+}
+
+// Joins the shear moduli of frames that determine nothing else.  E and nu are
+// those of the frame that knows its shear modulus best.
+Estimate JoinShearModuli(const std::vector<FrameEstimate>& frames,
+                         const LoadError& load_error) {
+  std::vector<FrameEstimate> moduli;
+  const Estimate* best = nullptr;
+  for (const FrameEstimate& frame : frames) {
+    moduli.push_back(FrameOfShearModulus(frame));
+    const Estimate& estimate = frame.estimate;
+    if (moduli.back().estimate.IsUsable() &&
+        (best == nullptr || estimate.shear_modulus->RelativeError() <
+                                best->shear_modulus->RelativeError())) {
+      best = &estimate;
+    }
+  }
+  Estimate joint = Join(moduli, load_error);
+  if (!joint.IsUsable()) {
+    return joint;
+  }
+  joint.shear_modulus = ModulusEstimate{
+      joint.parameters[0].value, std::sqrt(joint.parameter_covariance(0, 0)),
+      joint.parameters[0].value * joint.error_budget.noise(0)};
+  joint.parameters = best->parameters;
+  joint.parameter_covariance = best->parameter_covariance;
+  joint.error_budget = best->error_budget;
+  // Trends are of the parameters, which are not joined.
+  joint.series->trend.reset();
+  return joint;
+}
+
+}  // namespace
+
+Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
+                       const Estimator& estimator,
+                       const std::vector<FrameEstimate>& frames,
+                       const LoadError& load_error) {
+  Estimate joint = IsOfShearModulus(frames)
+                       ? JoinShearModuli(frames, load_error)
+                       : Join(frames, load_error);
+  joint.estimator = estimator.Name();
+  EnterWork(frames, joint);
+  if (!joint.IsUsable()) {
+    return joint;
+  }
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    const ParameterErrors& by_elements = joint.error_budget.discretization;
+    if (by_elements.size() == 2) {
+      joint.discretization_error = IfFinite(by_elements(0));
+      joint.poisson_ratio_discretization_error = IfFinite(by_elements(1));
+    }
+  }
   FinishEstimate(estimator.Name(), scene, options, {}, joint);
   return joint;
 }

@@ -58,6 +58,10 @@ struct LoadError {
 /// all of C_i explains: parts of what the elements and smooth noise contribute
 /// differ between frames as well, in a way that is not known.
 ///
+/// If most of the usable frames determine the shear modulus alone
+/// (Estimate::shear_modulus), y is its logarithm, and E and nu are those of the
+/// frame that knows it best.
+///
 /// Estimate::series has the number of frames and how the parameters change
 /// with the load, or from the first frame to the last where loads are the same
 /// (Trend).  Findings are those that most of the used frames have, and what

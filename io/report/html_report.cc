@@ -29,6 +29,16 @@ Json LabelsJson(const Estimate& estimate) {
   return labels;
 }
 
+// Returns the shear modulus that the data determine in place of E and nu; null
+// where there is none.
+Json ShearModulusJson(const Estimate& estimate) {
+  return estimate.shear_modulus
+             ? Json(
+                   {{"value", estimate.shear_modulus->value},
+                    {"standard_error", estimate.shear_modulus->standard_error}})
+             : Json(nullptr);
+}
+
 // Returns JSON in which no text ends the element of HTML around it.
 std::string WithinHtml(const Json& json) {
   std::string text;
@@ -81,6 +91,7 @@ std::string HtmlReport(const std::string& page, const Scene& scene,
       {"command", texts.command},
       {"report", Json::parse(texts.report)},
       {"labels", LabelsJson(estimate)},
+      {"shear_modulus", ShearModulusJson(estimate)},
       {"frames", texts.frames.empty() ? Json(nullptr) : Json(texts.frames)},
       {"frame", texts.frame ? Json(*texts.frame) : Json(nullptr)},
       {"specimen", PageSpecimen(scene, estimate, results)}};

@@ -74,6 +74,17 @@ PlanJson RelativeNoiseJson(const PlanBasis& basis) {
   return basis.noise_sd ? PlanJson(nullptr) : PlanJson(basis.relative_noise);
 }
 
+PlanJson ErrorsOfEstimateJson(const PlanBasis& basis) {
+  if (basis.errors_of_estimate.empty()) {
+    return nullptr;
+  }
+  PlanJson errors = PlanJson::array();
+  for (const double error : basis.errors_of_estimate) {
+    errors.push_back(OrNull(error));
+  }
+  return errors;
+}
+
 }  // namespace
 
 std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
@@ -100,6 +111,8 @@ std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
       {"notices", SentencesJson(notices)}};
   PlanJson complete = report;
   complete["before"].update(ErrorsJson(plan, plan.before));
+  complete["before"]["standard_errors_of_estimate"] =
+      ErrorsOfEstimateJson(basis);
   return complete.dump(2) + "\n";
 }
 

@@ -27,6 +27,9 @@ struct PlanBasis {
   /// The load case of each candidate in the scene, from 1 on; 0 for a candidate
   /// that is not in the scene.
   std::vector<int> load_case_of_candidate;
+  /// The standard errors of free parameters, of all causes, in the estimate of
+  /// what has been measured; empty without a usable estimate.
+  std::vector<double> errors_of_estimate = {};
 };
 
 /// Returns a plan as a JSON text, described in docs/report.md.  Numbers

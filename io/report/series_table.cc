@@ -35,29 +35,58 @@ std::string ColumnOf(const ParameterEstimate& parameter) {
   return name;
 }
 
-std::string Header(const std::vector<ParameterEstimate>& parameters) {
+// The columns that depend on the estimates.
+struct SeriesColumns {
+  std::vector<ParameterEstimate> parameters;
+  // Whether an estimate has a shear modulus that does not follow from E and nu.
+  bool have_shear_modulus = false;
+};
+
+SeriesColumns SeriesColumnsOf(const std::vector<FrameEstimate>& frames,
+                              const Estimate& joint) {
+  SeriesColumns columns = {joint.parameters, joint.shear_modulus.has_value()};
+  for (const FrameEstimate& frame : frames) {
+    if (columns.parameters.empty()) {
+      columns.parameters = frame.estimate.parameters;
+    }
+    columns.have_shear_modulus =
+        columns.have_shear_modulus || frame.estimate.shear_modulus;
+  }
+  return columns;
+}
+
+std::string Header(const SeriesColumns& columns) {
   std::string header = "frame,file,load,status";
-  for (const ParameterEstimate& parameter : parameters) {
-    const std::string name = ColumnOf(parameter);
+  const auto add = [&header](const std::string& name) {
     header += "," + name + "," + name + "_standard_error";
+  };
+  for (const ParameterEstimate& parameter : columns.parameters) {
+    add(ColumnOf(parameter));
+  }
+  if (columns.have_shear_modulus) {
+    add("shear_modulus");
   }
   return header + ",noise_sd,outliers,findings,reason\n";
 }
 
-// Returns the cells from the status on, for as many parameters as the header
-// has.
-std::string Cells(const Estimate& estimate, std::size_t num_parameters) {
+std::string Pair(const std::optional<double>& value,
+                 const std::optional<double>& error) {
+  return "," + Number(value) + "," + Number(error);
+}
+
+// Returns the cells from the status on.
+std::string Cells(const Estimate& estimate, const SeriesColumns& columns) {
   std::string row(estimate.Has(FindingCode::kNotRun)
                       ? FindingCodeName(FindingCode::kNotRun)
                       : StatusName(estimate.status));
-  for (std::size_t i = 0; i < num_parameters; ++i) {
-    const bool is_there = i < estimate.parameters.size();
-    row +=
-        "," +
-        Number(is_there ? std::optional(estimate.parameters[i].value)
-                        : std::nullopt) +
-        "," +
-        Number(is_there ? estimate.parameters[i].standard_error : std::nullopt);
+  for (std::size_t i = 0; i < columns.parameters.size(); ++i) {
+    row += i < estimate.parameters.size()
+               ? Pair(estimate.parameters[i].value,
+                      estimate.parameters[i].standard_error)
+               : Pair(std::nullopt, std::nullopt);
+  }
+  if (columns.have_shear_modulus) {
+    row += Pair(estimate.ShearModulus(), estimate.ShearModulusStandardError());
   }
   std::string codes;
   for (const Finding& finding : estimate.findings) {
@@ -78,20 +107,14 @@ std::string Cells(const Estimate& estimate, std::size_t num_parameters) {
 std::string SeriesTable(const FrameSeries& series,
                         const std::vector<FrameEstimate>& frames,
                         const Estimate& joint) {
-  std::vector<ParameterEstimate> parameters = joint.parameters;
-  for (const FrameEstimate& frame : frames) {
-    if (parameters.empty()) {
-      parameters = frame.estimate.parameters;
-    }
-  }
-  std::string table = Header(parameters);
+  const SeriesColumns columns = SeriesColumnsOf(frames, joint);
+  std::string table = Header(columns);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     table += std::to_string(i + 1) + "," +
              Cell(PrintablePath(series.files[i])) + "," +
-             Number(series.Load(i)) + "," +
-             Cells(frames[i].estimate, parameters.size());
+             Number(series.Load(i)) + "," + Cells(frames[i].estimate, columns);
   }
-  return table + "joint,,," + Cells(joint, parameters.size());
+  return table + "joint,,," + Cells(joint, columns);
 }
 
 }  // namespace elastimate

@@ -18,6 +18,10 @@ const data = JSON.parse(document.getElementById("data").textContent);
 // Labels are those of the command line, such as "E of region 3".
 data.parameters = data.report.parameters.map((parameter, i) => ({ ...parameter, ...data.labels[i] }));
 const { report, parameters } = data;
+// What the data determine in place of E and nu comes first.
+data.values = data.shear_modulus
+  ? [{ name: "shear_modulus", label: "shear_modulus", is_relative: true, known: false, interval: null, ...data.shear_modulus }, ...parameters]
+  : parameters;
 
 function header() {
   const verdict = report.usable
@@ -51,7 +55,7 @@ function parameterTable() {
       error !== null && isRelative && value ? percent(Math.abs(error / value)) : "",
     ];
   };
-  return table(["parameter", "value", "95 % interval", "relative error"], parameters.map(row), [1, 2, 3]);
+  return table(["parameter", "value", "95 % interval", "relative error"], data.values.map(row), [1, 2, 3]);
 }
 
 function budgetOf(place) {

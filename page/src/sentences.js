@@ -5,7 +5,7 @@ import { causes, listOf, longLabel, sentence } from "./words.js";
 
 const free = (parameters) => parameters.filter((parameter) => !parameter.known);
 
-function valuesSentence({ report, parameters }) {
+function valuesSentence({ report, parameters, values }) {
   if (isMean(report)) {
     const { verdict, regions } = report.map;
     if (verdict === "elements") {
@@ -27,7 +27,7 @@ function valuesSentence({ report, parameters }) {
       `${counted(free(parameters).length, "parameter")} that the measurement was asked for; the table below has them all.`
     );
   }
-  const texts = parameters
+  const texts = values
     .filter((parameter) => parameter.value !== null)
     .map((parameter) => {
       const error = parameter.standard_error;

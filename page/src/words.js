@@ -35,7 +35,7 @@ export const meanings = {
   shear_modulus: "how stiff it is against a change of shape",
 };
 
-const longLabels = { E: "Young's modulus E", nu: "Poisson's ratio nu" };
+const longLabels = { E: "Young's modulus E", nu: "Poisson's ratio nu", shear_modulus: "shear modulus mu" };
 
 /** Returns "Young's modulus E of region 3" for "E of region 3". */
 export function longLabel(label) {

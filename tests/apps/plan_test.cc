@@ -16,6 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class PlanCommand : public testing::ProgramTest {
  protected:
@@ -156,6 +157,30 @@ TEST_F(PlanCommand, TakesParametersAndNoiseOfAMeasurement) {
   EXPECT_NEAR(twice["before"]["standard_errors"][0].get<double>() /
                   plan["before"]["standard_errors"][0].get<double>(),
               2, 1e-3);
+}
+
+// A block of 2 cells is a coarse mesh, whose error is larger than that of
+// noise.
+TEST_F(PlanCommand, SaysWhatTheEstimateHasBesideNoise) {
+  Succeed("generate cuboid --cells=2,2,2 --out=coarse.vtu");
+  Succeed(
+      "simulate coarse.vtu --youngs=50000 --nu=0.4 --order=2 --noise=0.01 "
+      "--out=coarse_measured.vtu");
+  const Json plan = Succeed("plan coarse_measured.vtu --json=-").Json();
+  const Json estimate =
+      Succeed("estimate coarse_measured.vtu --estimator=iterative-fe --json=-")
+          .Json();
+  const double of_all =
+      plan["before"]["standard_errors_of_estimate"][0].get<double>();
+  EXPECT_NEAR(of_all * estimate["youngs_modulus"].get<double>() /
+                  estimate["standard_error"]["youngs_modulus"].get<double>(),
+              1, 1e-9);
+  EXPECT_GT(of_all, plan["before"]["standard_errors"][0].get<double>());
+  EXPECT_THAT(Succeed("plan coarse_measured.vtu").output,
+              HasSubstr("before, all errors    "));
+  const testing::ProgramRun unmeasured = Succeed("plan coarse.vtu");
+  EXPECT_THAT(unmeasured.output, HasSubstr("those of noise; an estimate also"));
+  EXPECT_THAT(unmeasured.output, Not(HasSubstr("all errors")));
 }
 
 TEST_F(PlanCommand, GivenNoiseOfGivenParametersIsALength) {

@@ -25,10 +25,16 @@ const parameters = [
 ];
 
 test("an estimate that is usable has values, ranges and what the fit leaves", () => {
-  const [values, trust, fit] = threeSentences({ report, parameters });
+  const [values, trust, fit] = threeSentences({ report, parameters, values: parameters });
   assert.strictEqual(values, "Young's modulus E is 0.10053 ± 0.00090 and Poisson's ratio nu is 0.3.");
   assert.match(trust, /95 %, E lies between 0\.09877 and 0\.10229; most of the error of E comes from the mesh \(0\.88 %\)/);
   assert.match(fit, /1\.6 % of the measured displacement.*warns of 1 thing/);
+});
+
+test("a shear modulus that is determined in place of E and nu is among the values", () => {
+  const shear = { label: "shear_modulus", is_relative: true, known: false, value: 0.0387, standard_error: 0.0009, interval: null };
+  const [values] = threeSentences({ report, parameters, values: [shear, ...parameters] });
+  assert.match(values, /^Shear modulus mu is 0\.03870 ± 0\.00090, Young's modulus E is /);
 });
 
 test("the parts of an error are sorted, without those that are zero or unknown", () => {
@@ -37,7 +43,7 @@ test("the parts of an error are sorted, without those that are zero or unknown",
 
 test("an estimate that is not usable says why first, and what to do", () => {
   const findings = [{ severity: "error", text: "noise biases nu", advice: "use --estimator=auto" }];
-  const [why, mend, rest] = threeSentences({ report: { ...report, usable: false, findings }, parameters });
+  const [why, mend, rest] = threeSentences({ report: { ...report, usable: false, findings }, parameters, values: parameters });
   assert.match(why, /no usable answer: noise biases nu\./);
   assert.match(mend, /use --estimator=auto\./);
   assert.match(rest, /do not use them/);

@@ -16,9 +16,8 @@ constexpr double kDegree = M_PI / 180;
 
 using Field = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
-// Returns a bar of 1 x 1 x 8 that is held where z = 0 and displaced by `field`.
-Scene BarMovedBy(const Field& field) {
-  const Mesh mesh = testing::BoxMesh({2, 2, 16}, {1, 1, 8});
+// Returns a body that is held where z = 0 and displaced by `field`.
+Scene BodyMovedBy(const Field& field, const Mesh& mesh) {
   Scene scene = testing::HeldAtBottom(mesh, mesh, {1, 0, 0});
   LoadCase& load_case = scene.load_cases[0];
   load_case.displacement.resize(3, mesh.NumNodes());
@@ -26,6 +25,11 @@ Scene BarMovedBy(const Field& field) {
     load_case.displacement.col(node) = field(mesh.nodes.col(node));
   }
   return scene;
+}
+
+// Returns a bar of 1 x 1 x 8.
+Scene BarMovedBy(const Field& field) {
+  return BodyMovedBy(field, testing::BoxMesh({2, 2, 16}, {1, 1, 8}));
 }
 
 Eigen::Vector3d Stretched(const Eigen::Vector3d& x) {
@@ -98,6 +102,32 @@ TEST(DeformationSize, IsNotMadeByNoise) {
   EXPECT_LT(size.rotation, 1 * kDegree);
 }
 
+// The noise is larger than the strip is thick times its strain.
+TEST(DeformationSize, IsNotMadeByNoiseAcrossAThinStrip) {
+  const Mesh strip = testing::BoxMesh({1, 4, 20}, {0.01, 2, 10});
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Scene scene = BodyMovedBy(
+        [](const Eigen::Vector3d& x) {
+          return Eigen::Vector3d(Stretched(x) / 10);
+        },
+        strip);
+    testing::AddNoise(0.01, seed, scene);
+    const DeformationSize size = MeasureDeformation(scene);
+    EXPECT_NEAR(size.strain, 0.005, 5e-4);
+    EXPECT_LT(size.rotation, 1 * kDegree);
+  }
+}
+
+TEST(DeformationSize, OfAThinLayerIsItsStrainAcross) {
+  Scene scene = BodyMovedBy(
+      [](const Eigen::Vector3d& x) {
+        return Eigen::Vector3d(0, 0, -0.1 * x(2));
+      },
+      testing::BoxMesh({10, 10, 1}, {10, 10, 0.05}));
+  testing::AddNoise(0.01, 1, scene);
+  EXPECT_NEAR(MeasureDeformation(scene).strain, 0.1, 0.01);
+}
+
 TEST(DeformationSize, IsNotMadeByGrossErrorsOfPoints) {
   Scene scene = BarMovedBy([](const Eigen::Vector3d& x) {
     return Eigen::Vector3d(Stretched(x) / 50);
@@ -129,6 +159,17 @@ TEST(DeformationSize, IsThatOfALocalDeformation) {
     testing::AddNoise(noise, 1, scene);
     EXPECT_GT(MeasureDeformation(scene).strain, 0.05) << noise;
   }
+}
+
+TEST(DeformationSize, IsThatOfTenPoints) {
+  Scene scene = BarMovedBy(Stretched);
+  testing::AddNoise(0.02, 1, scene);
+  ComponentMask& observed = scene.load_cases[0].observed;
+  observed.setConstant(3, scene.mesh.NumNodes(), false);
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    observed.col(i * scene.mesh.NumNodes() / 10).setConstant(true);
+  }
+  EXPECT_NEAR(MeasureDeformation(scene).strain, 0.05, 0.01);
 }
 
 TEST(DeformationSize, IsUnknownOfFewPoints) {

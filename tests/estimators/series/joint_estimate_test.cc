@@ -202,6 +202,36 @@ TEST(JointEstimate, LeavesOutWhatIsNotUsable) {
   EXPECT_TRUE(none.IsRefusedFor(FindingCode::kFramesLeftOut));
 }
 
+// Torsion determines neither E nor nu.  A hundredth of the variance of mu is
+// common to all frames.
+TEST(JointEstimate, JoinsShearModuliThatAreAllThatIsDetermined) {
+  std::vector<FrameEstimate> frames;
+  for (int i = 0; i < 100; ++i) {
+    FrameEstimate frame = FrameOf(100, 0.2, {0.5, 0.4}, {0.1, 0.1});
+    frame.estimate.shear_modulus = ModulusEstimate{
+        40 * std::exp(i % 2 == 0 ? 0.02 : -0.02), 0.8, 0.8 * std::sqrt(0.99)};
+    frames.push_back(frame);
+  }
+  frames[3].estimate.shear_modulus->standard_error = 0.7;
+  frames[3].estimate.parameters[0].value = 99;
+  const Estimate joint = Join(frames);
+  ASSERT_EQ(joint.status, Status::kOk) << joint.message;
+  EXPECT_EQ(joint.series->num_used, 100);
+  EXPECT_NEAR(joint.ShearModulus() / 40, 1, 1e-3);
+  EXPECT_NEAR(*joint.ShearModulusStandardError() / 40,
+              0.02 * std::sqrt(0.01 + 0.99 / 100), 1e-4);
+  // E and nu are those of the frame that knows mu best.
+  EXPECT_TRUE(joint.Has(FindingCode::kParametersUndetermined));
+  EXPECT_EQ(joint.elasticity.youngs_modulus, 99);
+  // They are joined again where most frames determine them.
+  for (std::size_t i = 0; i < 60; ++i) {
+    frames[i] = FrameOf(100, 0.2, {0.05, 0.04}, {0.05, 0.04});
+  }
+  const Estimate of_both = Join(frames);
+  EXPECT_FALSE(of_both.shear_modulus.has_value());
+  EXPECT_EQ(of_both.series->num_used, 60);
+}
+
 TEST(JointEstimate, TellsOfAMaterialThatIsNotLinear) {
   std::vector<FrameEstimate> frames;
   const Eigen::Vector2d errors(0.01, 0.02);

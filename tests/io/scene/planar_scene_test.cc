@@ -20,7 +20,8 @@
 namespace elastimate {
 namespace {
 
-constexpr double kYoungsModulus = 200;
+// Strains of 0.15 % are small ones.
+constexpr double kYoungsModulus = 2000;
 constexpr double kPoissonRatio = 0.25;
 constexpr double kTraction = 3;
 
