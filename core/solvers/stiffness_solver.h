@@ -51,7 +51,9 @@ inline Work operator-(const Work& a, const Work& b) {
 enum class SolverKind {
   /// Multigrid where a factorisation takes longer, as its analysis tells.  In a
   /// compact body that is from about 30 000 nodes on with linear tetrahedra and
-  /// 200 000 with quadratic ones, in plates and bars from many more on.
+  /// 200 000 with quadratic ones, in plates and bars from many more on.  An
+  /// Equilibrium of straight quadratic elements iterates over their vertices
+  /// instead where these would take multigrid.
   kAutomatic,
   kCholesky,   ///< Direct.  In a compact body, time grows with nodes squared.
   kMultigrid,  ///< Conjugate gradients; needs PETSc (HasMultigrid).
