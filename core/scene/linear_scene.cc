@@ -1,8 +1,11 @@
 #include "elastimate/core/scene/linear_scene.h"
 
+#include <algorithm>
 #include <variant>
 
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/linear_mesh.h"
+#include "elastimate/core/scene/spread_loads.h"
 
 namespace elastimate {
 namespace {
@@ -36,6 +39,13 @@ struct LoadCutter {
   }
 };
 
+bool HasNodalForces(const LoadCase& load_case) {
+  return std::any_of(load_case.loads.begin(), load_case.loads.end(),
+                     [](const Load& load) {
+                       return std::holds_alternative<NodalForces>(load);
+                     });
+}
+
 }  // namespace
 
 Scene LinearScene(const Scene& scene) {
@@ -55,6 +65,10 @@ Scene LinearScene(const Scene& scene) {
     }
   }
   for (LoadCase& load_case : linear.load_cases) {
+    if (scene.mesh.Order() == 1 && HasNodalForces(load_case)) {
+      load_case.loads = SpreadLoads(scene.mesh, BoundaryFacets(scene.mesh),
+                                    scene.supports.held, load_case.loads);
+    }
     for (Load& load : load_case.loads) {
       load = std::visit(LoadCutter{mesh}, load);
     }

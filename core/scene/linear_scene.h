@@ -7,7 +7,8 @@ namespace elastimate {
 
 /// Models a scene with linear elements of the same nodes (LinearMesh).  What is
 /// held or measured at nodes stays as it is; facets and points become facets
-/// and points of the linear elements.
+/// and points of the linear elements.  Nodal forces on linear elements become
+/// loads that can be assembled for other elements too (SpreadLoads).
 ///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.
