@@ -82,10 +82,11 @@ class Equilibrium : public ForwardModel {
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
   Eigen::MatrixXd SupportResponse() const { return OrZeros(support_response_); }
 
-  /// A pass and n solves for each load case, n passes where iterations solve,
-  /// which spare a direction in which all moduli grow alike; nothing where the directions are
-  /// those of the last call and neither moduli nor supports have changed since,
-  /// because searches within bounds ask twice.
+  /// Takes a pass and n solves for each load case.  Iterations take n passes,
+  /// and neither a pass nor a solve for a direction in which all moduli grow
+  /// alike.  Takes nothing where the directions are those of the last call and
+  /// neither moduli nor supports have changed since, because searches within
+  /// bounds ask twice.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
   /// Gives back the memory of the last displacement and sensitivities.  Solve
   /// has to be called before anything that describes a solution.

@@ -315,8 +315,11 @@ void SpaceFit::Minimize(Descent descent,
 }
 
 void SpaceFit::MinimizeAcrossRange(Descent descent) {
+  const Work before = WorkDone();
   const std::vector<Eigen::VectorXd> starts =
       StartsAcrossRange(scene_, *fit_.minimum, misfit_);
+  Work& work = fit_.estimate.work;
+  work = work + (WorkDone() - before);
   MinimizeAlsoFrom(descent, {starts.begin(), starts.end()});
 }
 

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "elastimate/estimators/plan/expected_information.h"
