@@ -181,8 +181,7 @@ Eigen::MatrixXd SlopesAt(const Frame& frame,
 std::vector<Eigen::Array3i> MonomialsFor(Eigen::Index num_values,
                                          Eigen::Index dimension) {
   for (int degree = kLargestDegree; degree > 0; --degree) {
-    const std::vector<Eigen::Array3i> exponents =
-        ExponentsUpTo(degree, dimension);
+    std::vector<Eigen::Array3i> exponents = ExponentsUpTo(degree, dimension);
     const Eigen::Index needed =
         degree == 1 ? kValuesPerAffineMonomial : kValuesPerMonomial;
     if (needed * Eigen::Index(exponents.size()) <= num_values) {

@@ -155,10 +155,10 @@ class Iterations {
       share = rz.cwiseQuotient(last_rz_);
       Scale(direction_, share);
       AddTo(direction_, z);
+      z.resize(0, 0);  // A column of a large mesh needs much memory.
     } else {
       direction_ = std::move(z);
     }
-    z.resize(0, 0);  // A column of a large mesh needs much memory.
     const Eigen::MatrixXd product = Multiply(direction_);
     const Eigen::RowVectorXd energy = ProductsOfColumns(direction_, product);
     if (!(energy.array() > 0).all() || !energy.allFinite()) {
