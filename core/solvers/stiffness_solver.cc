@@ -157,8 +157,11 @@ bool StiffnessSolver::FactorizeToSolve() {
 }
 
 void StiffnessSolver::KeepPreconditioner() {
-  shared_->has_preconditioner_only =
-      CanMakeValues() && shared_->solver->KeepPreconditioner();
+  // The matrix at hand may be one that only another solver can make again.
+  if (own_factorization_ == shared_->num_factorizations && CanMakeValues() &&
+      shared_->solver->KeepPreconditioner()) {
+    shared_->has_preconditioner_only = true;
+  }
 }
 
 void StiffnessSolver::FallBackToCholesky(const std::string& why) {

@@ -307,8 +307,9 @@ void SpaceFit::Minimize(Descent descent,
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   estimate.work = estimate.work + (WorkDone() - before);
   // A certificate would cost factors of the finest space.
-  if (!start && fit_.minimum && options_.loss == Loss::kNone &&
-      !misfit_.HasLargeStrains() && misfit_.SmallStrainModel().IsRefined() &&
+  if (!start && fit_.minimum && descent == Descent::kReduced &&
+      options_.loss == Loss::kNone && !misfit_.HasLargeStrains() &&
+      misfit_.SmallStrainModel().IsRefined() &&
       CertifiedDescent::Takes(scene_)) {
     MinimizeAcrossRange(descent);
   }

@@ -23,12 +23,14 @@ std::optional<DisplacementMisfit::ScaleFit> IfPositive(
 }
 
 // Returns the error that iterative solutions may have, relative in the energy
-// norm.  What finer elements change is a thousandth of a displacement at least
-// where it matters; the elimination of motions asks for more.
+// norm.  What finer elements change of measured displacements is a thousandth
+// of these at least where it matters.  Computed ones may be exact, and the
+// elimination of motions asks for more.
 double ToleranceFor(const Scene& scene) {
   constexpr double kOfDisplacements = 1e-5;
-  return HasUnknownMotion(scene) ? StiffnessSolver::kAccurate
-                                 : kOfDisplacements;
+  return HasUnknownMotion(scene) || scene.origin != Origin::kMeasured
+             ? StiffnessSolver::kAccurate
+             : kOfDisplacements;
 }
 
 std::unique_ptr<ForwardModel> MakeModel(const std::vector<const Scene*>& spaces,

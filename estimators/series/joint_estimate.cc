@@ -97,14 +97,17 @@ Eigen::MatrixXd Without(const Eigen::VectorXd& common,
          parts.vectors.transpose();
 }
 
+// Whether neither E nor nu is a value that could be averaged.
+bool DeterminesShearModulusAlone(const Estimate& estimate) {
+  return estimate.shear_modulus && !estimate.parameters[0].IsDetermined();
+}
+
 std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
                              const LoadError& load_error) {
   const Estimate& estimate = frame.estimate;
   const Eigen::VectorXi free = FreeParametersOf(estimate);
-  // Neither E nor nu is then a value that could be averaged.
-  const bool is_shear_modulus_alone =
-      estimate.shear_modulus && !estimate.parameters[0].IsDetermined();
-  if (!estimate.IsUsable() || is_shear_modulus_alone || free.size() == 0 ||
+  if (!estimate.IsUsable() || DeterminesShearModulusAlone(estimate) ||
+      free.size() == 0 ||
       estimate.parameter_covariance.rows() !=
           Eigen::Index(estimate.parameters.size())) {
     return std::nullopt;
@@ -594,7 +597,8 @@ bool IsOfShearModulus(const std::vector<FrameEstimate>& frames) {
     return frame.estimate.IsUsable();
   };
   const auto is_of_it = [](const FrameEstimate& frame) {
-    return frame.estimate.IsUsable() && frame.estimate.shear_modulus;
+    return frame.estimate.IsUsable() &&
+           DeterminesShearModulusAlone(frame.estimate);
   };
   return 2 * std::count_if(frames.begin(), frames.end(), is_of_it) >
          std::count_if(frames.begin(), frames.end(), is_usable);

@@ -232,6 +232,18 @@ TEST(JointEstimate, JoinsShearModuliThatAreAllThatIsDetermined) {
   EXPECT_EQ(of_both.series->num_used, 60);
 }
 
+// A shear modulus that is known better does not take the place of a modulus
+// that is determined itself.
+TEST(JointEstimate, AveragesAModulusBesideAShearModulus) {
+  FrameEstimate frame = FrameOf(100, 0.2, {0.1, 0.3}, {0.1, 0.3});
+  frame.estimate.parameters[0].standard_error = 10;
+  frame.estimate.shear_modulus = ModulusEstimate{40, 0.8, 0.8};
+  const Estimate joint = Join(std::vector<FrameEstimate>(100, frame));
+  EXPECT_EQ(joint.series->num_used, 100);
+  EXPECT_NEAR(*joint.YoungsModulusStandardError() / 100, 0.1 / std::sqrt(100),
+              0.005);
+}
+
 TEST(JointEstimate, TellsOfAMaterialThatIsNotLinear) {
   std::vector<FrameEstimate> frames;
   const Eigen::Vector2d errors(0.01, 0.02);
