@@ -54,8 +54,8 @@ std::string Row(const std::string& name, const ExpectedErrors& errors,
   return row + WorstText(errors, free);
 }
 
-// Returns what the errors of all causes are in the estimate of the load cases
-// before.
+// Returns the row with the full errors of the estimate of the load cases that
+// were measured; empty where there is none.
 std::string RowOfEstimate(const PlanBasis& basis,
                           const std::vector<ParameterEstimate>& free) {
   if (basis.errors_of_estimate.size() != free.size() ||

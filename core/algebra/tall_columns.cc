@@ -5,15 +5,15 @@
 namespace elastimate {
 namespace {
 
-// A thread takes about as long to start as so many rows.
+// Starting a thread takes about as long as the work on this many rows.
 constexpr Eigen::Index kRows = 20000;
 
 Eigen::Index NumBlocks(Eigen::Index num_rows) {
   return (num_rows + kRows - 1) / kRows;
 }
 
-// Returns the sum of what sum(first, count), a row of as many values as there
-// are columns, is for each block of rows.
+// Adds up sum(first, count), a row with a value for each column, over all
+// blocks of rows.
 template <class Sum>
 Eigen::RowVectorXd SumOverRowBlocks(Eigen::Index num_rows,
                                     Eigen::Index num_columns, const Sum& sum) {

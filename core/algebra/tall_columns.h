@@ -6,9 +6,10 @@
 
 namespace elastimate {
 
-// Operations on a few columns with a row for each degree of freedom.  OpenMP's
-// threads share blocks of rows, and no operation needs memory of the size of a
-// column.  The bits do not depend on the number of threads.
+// Operations on a few columns with a row for each degree of freedom.  Two
+// arguments have the same size, and there is a factor for each column.
+// OpenMP's threads share blocks of rows, and no operation needs memory of the
+// size of a column.  The bits do not depend on the number of threads.
 
 /// Calls work(first, count) for blocks of rows that cover all of them once.
 /// `work` must not write outside of its rows.
@@ -20,7 +21,7 @@ void ForRowBlocks(
 [[nodiscard]] Eigen::RowVectorXd ColumnProducts(const Eigen::MatrixXd& a,
                                                 const Eigen::MatrixXd& b);
 
-/// Returns the sum of the magnitudes of each column.
+/// Returns the sum of the absolute values in each column.
 [[nodiscard]] Eigen::RowVectorXd ColumnMagnitudes(const Eigen::MatrixXd& a);
 
 /// Adds each column of `a` to that of `sum`.

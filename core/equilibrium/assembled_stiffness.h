@@ -61,7 +61,7 @@ class AssembledStiffness : public SupportedStiffness {
   const Supports& supports_;
   SolverKind kind_;
   mutable std::unique_ptr<StiffnessSolver> solver_;
-  /// The rows of K, of which only the held ones have entries.
+  /// K with its held rows only; all other rows are empty.
   Eigen::SparseMatrix<double, Eigen::RowMajor> rows_;
 };
 

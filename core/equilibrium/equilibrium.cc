@@ -14,39 +14,36 @@
 
 namespace elastimate {
 
-namespace {
-
-// The spaces in which systems are solved: all of them where they are nested,
-// else the finest, with the space of its vertices if there is one.
-std::vector<const Scene*> UsedSpaces(const std::vector<const Scene*>& spaces,
-                                     const VertexSpace* vertices) {
-  if (AreNested(spaces)) {
-    return spaces;
-  }
-  return vertices == nullptr
-             ? std::vector<const Scene*>{spaces.back()}
-             : std::vector<const Scene*>{&vertices->scene, spaces.back()};
-}
-
-}  // namespace
-
 Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
     : Equilibrium(std::vector<const Scene*>{&scene}, solver) {}
 
 Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
                          SolverKind solver, double tolerance,
                          const StiffnessSolver* shared)
-    : vertices_(AreNested(spaces)
-                    ? nullptr
-                    : VertexSpaceToSolveBy(*spaces.back(), solver)),
-      values_(std::make_unique<NestedStiffness>(
-          UsedSpaces(spaces, vertices_.get()))),
-      mesh_(&spaces.back()->mesh),
-      load_(AssembleLoadCases(*spaces.back())),
-      has_unknown_motion_(HasUnknownMotion(*spaces.back())),
+    : Equilibrium(UsedSpacesOf(spaces, solver), solver, tolerance, shared) {}
+
+Equilibrium::UsedSpaces Equilibrium::UsedSpacesOf(
+    const std::vector<const Scene*>& spaces, SolverKind solver) {
+  if (AreNested(spaces)) {
+    return {spaces, nullptr};
+  }
+  UsedSpaces used = {{spaces.back()},
+                     VertexSpaceToSolveBy(*spaces.back(), solver)};
+  if (used.vertices) {
+    used.scenes.insert(used.scenes.begin(), &used.vertices->scene);
+  }
+  return used;
+}
+
+Equilibrium::Equilibrium(UsedSpaces used, SolverKind solver, double tolerance,
+                         const StiffnessSolver* shared)
+    : vertices_(std::move(used.vertices)),
+      values_(std::make_unique<NestedStiffness>(used.scenes)),
+      mesh_(&used.scenes.back()->mesh),
+      load_(AssembleLoadCases(*used.scenes.back())),
+      has_unknown_motion_(HasUnknownMotion(*used.scenes.back())),
       tolerance_(IsRefined() ? tolerance : StiffnessSolver::kAccurate) {
-  const Scene& scene = *spaces.back();
-  const std::vector<const Scene*> used = UsedSpaces(spaces, vertices_.get());
+  const Scene& scene = *used.scenes.back();
   if (vertices_) {
     shared = &vertices_->solver;
   }
@@ -54,8 +51,8 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
   stiffness_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
     const bool is_like_shared =
-        shared != nullptr && shared->Holds(SupportsOf(*used.front(), k));
-    AddStiffness(used, k, solver, is_like_shared ? shared : nullptr);
+        shared != nullptr && shared->Holds(SupportsOf(*used.scenes.front(), k));
+    AddStiffness(used.scenes, k, solver, is_like_shared ? shared : nullptr);
     if (is_like_shared) {
       shared = nullptr;  // Two of them would factorise in turns.
     }
@@ -230,8 +227,10 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
         }
         continue;
       }
+      ++element_passes_;
       columns = -stiffness_[stiffness_of_case_[k]]->Solve(
-          ForcesAlong(directions.middleCols(i, at_a_time) / scale_, k),
+          Forces().Along(directions.middleCols(i, at_a_time) / scale_,
+                         displacement_.col(k)),
           has_start ? Eigen::MatrixXd(columns) : Eigen::MatrixXd());
     }
   }
@@ -247,15 +246,6 @@ std::optional<double> Equilibrium::GrowthAlong(
                                      kRounding * direction.norm()
              ? std::optional<double>(growth)
              : std::nullopt;
-}
-
-Eigen::MatrixXd Equilibrium::ForcesAlong(const Eigen::MatrixXd& directions,
-                                         Eigen::Index k) {
-  ++element_passes_;
-  return directions.cols() == 1
-             ? Forces().Multiply(directions.col(0), displacement_.col(k))
-             : Eigen::MatrixXd(Forces().Columns(displacement_.col(k)) *
-                               directions);
 }
 
 Eigen::MatrixXd Equilibrium::SolveFor(const Eigen::MatrixXd& forces) {
@@ -355,7 +345,7 @@ Eigen::MatrixXd Equilibrium::SupportForceSensitivities(
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
     forces.middleCols(n * k, n) += stiffness_[stiffness_of_case_[k]]->OfHeld(
-        Forces().Columns(displacement_.col(k)) * directions);
+        Forces().Along(directions, displacement_.col(k)));
   }
   return forces;
 }

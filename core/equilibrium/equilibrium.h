@@ -107,12 +107,12 @@ class Equilibrium : public ForwardModel {
     return Forces().Columns(displacement);
   }
 
-  /// Does what SolveFor does with the factor of the stiffness, or without one
-  /// as far as one application of the preconditioner of the iterations does it.
+  /// Solves as SolveFor does where there is a factor of the stiffness.  Where
+  /// iterations solve, applies their preconditioner once.
   /// Precondition: the held rows are zero (ClearHeld).
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& forces);
-  /// Sets the held rows of columns to zero, of which each load case has as many
-  /// as the others, side by side.
+  /// Sets the held rows to zero.  `columns` has the same number of columns for
+  /// each load case, side by side.
   void ClearHeld(Eigen::MatrixXd& columns) const;
   /// Tells whether iterations solve the systems.
   bool IsRefined() const;
@@ -155,6 +155,17 @@ class Equilibrium : public ForwardModel {
   const std::string& Notice() const override;
 
  private:
+  /// The spaces in which systems are solved: all that were given where they are
+  /// nested, else the finest, with the space of its vertices if there is one.
+  struct UsedSpaces {
+    std::vector<const Scene*> scenes;
+    std::unique_ptr<VertexSpace> vertices;
+  };
+  static UsedSpaces UsedSpacesOf(const std::vector<const Scene*>& spaces,
+                                 SolverKind solver);
+  Equilibrium(UsedSpaces used, SolverKind solver, double tolerance,
+              const StiffnessSolver* shared);
+
   Eigen::Index NumLoadCases() const { return load_.cols(); }
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
                     SolverKind solver, const StiffnessSolver* shared);
@@ -169,14 +180,10 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd SolveFrom(const Eigen::MatrixXd& start,
                             const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
-  /// Returns the rate at which all moduli grow alike along this direction, and
-  /// displacements by loads shrink.  Empty where they do not grow alike, and
+  /// If all moduli grow at the same relative rate along this direction, returns
+  /// that rate, at which displacements by loads shrink.  Empty otherwise, and
   /// where motions are unknown.
   std::optional<double> GrowthAlong(const Eigen::VectorXd& direction) const;
-  /// Returns how the internal forces of the last displacement of load case `k`
-  /// change along these directions of the moduli: a pass.
-  Eigen::MatrixXd ForcesAlong(const Eigen::MatrixXd& directions,
-                              Eigen::Index k);
   /// Returns the values, or zeros where there are none.
   Eigen::MatrixXd OrZeros(const Eigen::MatrixXd& values) const {
     return values.size() > 0
@@ -184,7 +191,8 @@ class Equilibrium : public ForwardModel {
                : Eigen::MatrixXd::Zero(load_.rows(), load_.cols());
   }
 
-  std::unique_ptr<VertexSpace> vertices_;  ///< Mostly null.
+  /// Null unless VertexSpaceToSolveBy returns one.
+  std::unique_ptr<VertexSpace> vertices_;
   std::unique_ptr<NestedStiffness> values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
   const Mesh* mesh_;  ///< The finest one.

@@ -8,8 +8,8 @@
 namespace elastimate {
 namespace {
 
-// With fewer vertices a factorisation is faster in a body of any shape, so that
-// the analysis of the vertices can be spared.
+// With fewer vertices a factorisation is faster whatever the shape of the body,
+// so the vertices need not be analysed.
 constexpr Eigen::Index kFewVertices = 20000;
 
 Supports OfVertices(const Supports& supports, Eigen::Index num_vertices) {

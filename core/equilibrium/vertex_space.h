@@ -8,8 +8,9 @@
 
 namespace elastimate {
 
-/// The linear elements of the vertices of a quadratic mesh, whose functions are
-/// among those of the quadratic elements where edges are straight.
+/// Linear elements on the vertices of a quadratic mesh. Where edges are
+/// straight, the shape functions of the quadratic elements span those of the
+/// linear ones.
 struct VertexSpace {
   VertexSpace(Scene vertices, SolverKind kind);
   VertexSpace(const VertexSpace&) = delete;

@@ -110,6 +110,14 @@ Eigen::MatrixXd InternalForces::Columns(
   return columns;
 }
 
+Eigen::MatrixXd InternalForces::Along(
+    const Eigen::MatrixXd& directions,
+    const Eigen::VectorXd& displacement) const {
+  return directions.cols() == 1
+             ? Multiply(directions.col(0), displacement)
+             : Eigen::MatrixXd(Columns(displacement) * directions);
+}
+
 Eigen::Matrix2Xd InternalForces::ModuliOfElements(
     const Eigen::VectorXd& moduli) const {
   assert(is_isotropic_);

@@ -49,6 +49,12 @@ class InternalForces {
   /// num_moduli.  One element pass.
   Eigen::MatrixXd Columns(const Eigen::VectorXd& displacement) const;
 
+  /// Returns how the forces on one displacement change along directions
+  /// d theta / dp (num_moduli x n): num_dofs x n.  One element pass.  For one
+  /// direction no column but the result is made.
+  Eigen::MatrixXd Along(const Eigen::MatrixXd& directions,
+                        const Eigen::VectorXd& displacement) const;
+
   /// Returns K(theta) V for some columns V, num_dofs x n.  One element pass.
   Eigen::MatrixXd Multiply(const Eigen::VectorXd& moduli,
                            const Eigen::MatrixXd& displacements) const;

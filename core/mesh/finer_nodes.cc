@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "elastimate/core/algebra/tall_columns.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/shape_functions.h"
 
@@ -74,18 +75,17 @@ template <int kDimension>
 void InterpolateColumn(const FinerNodes::Weights& weights,
                        const double* at_nodes, double* at_middles) {
   using Values = Eigen::Matrix<double, kDimension, 1>;
-  // A thread takes about as long to start as so many rows.
-  constexpr Eigen::Index kFewRows = 5000;
-#pragma omp parallel for schedule(static) if (weights.rows() > kFewRows)
-  for (Eigen::Index row = 0; row < weights.rows(); ++row) {
-    Values sum = Values::Zero();
-    for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;
-         ++weight) {
-      sum += weight.value() *
-             Eigen::Map<const Values>(at_nodes + kDimension * weight.col());
+  ForRowBlocks(weights.rows(), [&](Eigen::Index first, Eigen::Index count) {
+    for (Eigen::Index row = first; row < first + count; ++row) {
+      Values sum = Values::Zero();
+      for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;
+           ++weight) {
+        sum += weight.value() *
+               Eigen::Map<const Values>(at_nodes + kDimension * weight.col());
+      }
+      Eigen::Map<Values>(at_middles + kDimension * row) = sum;
     }
-    Eigen::Map<Values>(at_middles + kDimension * row) = sum;
-  }
+  });
 }
 
 template <int kDimension>

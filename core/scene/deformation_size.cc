@@ -23,8 +23,8 @@ constexpr int kLargestDegree = 4;
 // So many observed values are needed for each coefficient of a polynomial, so
 // that noise is smoothed.
 constexpr Eigen::Index kValuesPerMonomial = 4;
-// An affine function amplifies noise least, and without it large strains of few
-// points would count as none.
+// An affine function amplifies noise least, so fewer values are enough. If it
+// needed as many, specimens with few points would seem to have no strain.
 constexpr Eigen::Index kValuesPerAffineMonomial = 2;
 // Points on a surface make the polynomials dependent.  Polynomials that are
 // dependent to within this share, though not to within rounding, still amplify
@@ -196,13 +196,14 @@ struct Gradients {
   // Dimension x num_points for each component; none where there are too few
   // values.
   std::vector<Eigen::MatrixXd> of_components;
-  // The products of slopes along each pair of coordinates that noise makes:
-  // the mean of all points, and the sum of all components.
+  // What noise adds to the products of slopes along each pair of coordinates:
+  // averaged over the points and summed over the components.
   Eigen::MatrixXd noise;
 };
 
 // Returns the covariance of coefficients of least squares for noise of variance
-// 1.  Coefficients of dependent monomials are zero, and have none.
+// 1.  Dependent monomials have coefficients of zero, and their rows and columns
+// are zero.
 Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& coefficients,
                              const Eigen::MatrixXd& monomials) {
   std::vector<Eigen::Index> independent;
@@ -214,7 +215,7 @@ Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& coefficients,
   Eigen::MatrixXd covariance =
       Eigen::MatrixXd::Zero(monomials.cols(), monomials.cols());
   if (independent.empty()) {
-    return covariance;  // Nothing moves.
+    return covariance;  // All displacements are zero.
   }
   const Eigen::MatrixXd columns = monomials(Eigen::all, independent);
   covariance(independent, independent) = Inverse(columns.transpose() * columns);
@@ -365,7 +366,7 @@ Eigen::MatrixXd PointsOfTheVolume(const Scene& scene, const LoadCase& load_case,
                      scene.mesh.nodes);
 }
 
-// The places of all components.
+// How the observed places extend.
 struct LeastDirection {
   // The direction along which they extend least.
   Eigen::Vector3d normal;
@@ -418,7 +419,8 @@ Eigen::MatrixXd WithNormal(const Eigen::Vector3d& normal,
 }
 
 // Completes the gradients along the direction in which the places extend least,
-// where these say nothing of it, or nothing that noise could not say as well.
+// where the places say nothing about this direction, or no more than noise
+// would.
 void CompleteAlongNormal(const LeastDirection& least,
                          const Eigen::Matrix3d& noise,
                          std::vector<Eigen::MatrixXd>& gradients) {

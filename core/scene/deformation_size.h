@@ -22,7 +22,7 @@ struct DeformationSize {
 
 /// Measures displacements after it has smoothed them by polynomials in the
 /// position, of degree 4 or, where few points were observed, of a lower degree
-/// (affine ones need eight in space):
+/// (affine ones, the lowest, need eight points in space and six in the plane):
 ///
 ///   F = 1 + grad u = R U,   s the eigenvalues of U,   angle of R.
 ///
@@ -30,11 +30,11 @@ struct DeformationSize {
 /// of a point counts as no deformation, and a local deformation, of several
 /// neighbours, counts.
 ///
-/// Slopes along the direction in which the places extend least may be unknown,
-/// because the places lie in one plane and the body is thin along its normal,
-/// or may be no larger than three standard deviations of what noise makes of
-/// them, as between the faces of a thin strip.  This direction is then taken to
-/// stay a unit normal of the deformed plane across it.
+/// Let n be the direction in which the places extend least. Slopes along n are
+/// unknown if the places lie in a plane and the body is thin along n. They may
+/// also be no larger than three standard deviations of what noise makes of
+/// them, as between the faces of a thin strip. In both cases n is taken to stay
+/// a unit normal of the deformed plane across it.
 ///
 /// The result is the largest of all load cases, and zero where too few points
 /// were observed for a gradient.  Where not all nodes were observed, the

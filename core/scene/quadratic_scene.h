@@ -25,11 +25,11 @@ namespace elastimate {
 /// volume.  Where supports are boxes, the boxes decide instead about each node
 /// within.  Where a support may end within elements (FindSupportEnds),
 /// Supports::in_doubt says so.
-/// - Loads: nodal forces are spread out where they stand for that
-/// (SpreadLoads).  What is left of them is zero there, so that its virtual work
-/// is that of the given forces on the displacements of the vertices.  Body
-/// forces, tractions and pressures stay what they are; facets get their middle
-/// nodes.
+/// - Loads: nodal forces that stand for a distributed load become that load
+/// (SpreadLoads).  Nodal forces that are left are zero on middle nodes, so that
+/// their virtual work is that of the given forces on the displacements of the
+/// vertices.  Body forces, tractions and pressures stay what they are; facets
+/// get their middle nodes.
 /// - Measurements: middle nodes are not observed, and their displacement is
 /// zero.
 ///

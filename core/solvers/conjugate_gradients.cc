@@ -253,9 +253,10 @@ class Iterations {
   Eigen::MatrixXd direction_;
   Eigen::RowVectorXd length_;
   Eigen::RowVectorXd last_rz_;
-  /// The squared energy norm of the solution as far as it is known, which the
-  /// steps, as they are conjugate, add up to: that of the guess, which the rest
-  /// is conjugate to, and those of the steps.
+  /// The squared energy norm of the solution so far, as a measure of its size:
+  /// that of the scaled guess plus those of the steps. The sum is exact once
+  /// the residual is zero, since the guess is then conjugate to the sum of the
+  /// steps.
   Eigen::RowVectorXd energy_;
   std::vector<LanczosMatrix> lanczos_;
 };

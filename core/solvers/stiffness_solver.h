@@ -51,9 +51,9 @@ inline Work operator-(const Work& a, const Work& b) {
 enum class SolverKind {
   /// Multigrid where a factorisation takes longer, as its analysis tells.  In a
   /// compact body that is from about 30 000 nodes on with linear tetrahedra and
-  /// 200 000 with quadratic ones, in plates and bars from many more on.  An
-  /// Equilibrium of straight quadratic elements iterates over their vertices
-  /// instead where these would take multigrid.
+  /// 200 000 with quadratic ones, in plates and bars from many more on.
+  /// Equilibrium solves straight quadratic elements by iterations over linear
+  /// elements on their vertices, where those take multigrid.
   kAutomatic,
   kCholesky,   ///< Direct.  In a compact body, time grows with nodes squared.
   kMultigrid,  ///< Conjugate gradients; needs PETSc (HasMultigrid).
@@ -121,8 +121,8 @@ class StiffnessSolver {
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all);
   /// Does what LinearSolver::Renew does.
   bool Renew();
-  /// Gives back the memory that Precondition does not need.  Solve and Renew
-  /// take it again, for which they factorise.
+  /// Gives back the memory that Precondition does not need.  The next Solve or
+  /// Renew factorises again.
   void KeepPreconditioner();
 
   /// Returns nu of the present factorisation; NaN when there is none, or when

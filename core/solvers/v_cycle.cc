@@ -33,20 +33,20 @@ void InvertEach(const Eigen::MatrixXd& blocks, Eigen::MatrixXf& inverses) {
 template <int kDimension, class Columns>
 void AddEach(const Eigen::MatrixXf& blocks, const Columns& v, double keep,
              Eigen::MatrixXd& x) {
-  // A thread takes about as long to start as so many rows.
-  constexpr Eigen::Index kFewRows = 20000;
-  const Eigen::Index num_rows = x.rows();
   for (Eigen::Index k = 0; k < x.cols(); ++k) {
-#pragma omp parallel for schedule(static) if (num_rows > kFewRows)
-    for (Eigen::Index i = 0; i < num_rows; i += kDimension) {
-      const Eigen::Matrix<double, kDimension, 1> of_node =
-          v.col(k).template segment<kDimension>(i);
-      auto sum = x.col(k).segment<kDimension>(i);
-      sum = keep * sum + (blocks.middleCols<kDimension>(i)
-                              .template topRows<kDimension>()
-                              .template cast<double>()
-                              .lazyProduct(of_node));
-    }
+    ForRowBlocks(
+        x.rows() / kDimension, [&](Eigen::Index first, Eigen::Index count) {
+          for (Eigen::Index node = first; node < first + count; ++node) {
+            const Eigen::Index i = kDimension * node;
+            const Eigen::Matrix<double, kDimension, 1> of_node =
+                v.col(k).template segment<kDimension>(i);
+            auto sum = x.col(k).segment<kDimension>(i);
+            sum = keep * sum + (blocks.middleCols<kDimension>(i)
+                                    .template topRows<kDimension>()
+                                    .template cast<double>()
+                                    .lazyProduct(of_node));
+          }
+        });
   }
 }
 

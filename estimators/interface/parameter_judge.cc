@@ -370,8 +370,8 @@ void JudgeNearnessOfLimits(Estimate& estimate) {
   if (near.empty()) {
     return;
   }
-  // The balance of virtual work has spurious minima there.  Those of the frames
-  // of a series are left out already.
+  // The balance of virtual work has spurious minima there.  A series has left
+  // out frames that ended in one.
   if (estimate.displacement_residual || estimate.series) {
     estimate.Add(ParametersNearLimits(near, Severity::kWarning));
   } else {

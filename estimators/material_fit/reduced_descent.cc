@@ -90,6 +90,8 @@ class ReducedDescent {
   /// directions d theta / dp.
   Eigen::MatrixXd ForcesOf(const Eigen::MatrixXd& directions);
   bool SolveForAdjoint(const Eigen::VectorXd& residual, double tolerance);
+  /// The gradient at the check, by the adjoint, without what a bound holds.
+  Eigen::VectorXd GradientWithin(const std::vector<Side>& on_bound);
   bool SolveNear(Eigen::MatrixXd forces, const Eigen::VectorXd& tolerances,
                  Eigen::MatrixXd& x);
 
@@ -122,8 +124,8 @@ bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
           reduced_.Displacement(),
           reduced_.DisplacementSensitivities(free.ModuliJacobian(x)));
     }
-    // The new pole is nearer to the minimum, and as many vectors of a large
-    // mesh need much memory.
+    // The new pole is nearer to the minimum, so the old vectors are worth less
+    // than the memory that they need on a large mesh.
     if (model.IsRefined()) {
       reduced_.ForgetBases();
     }
@@ -266,15 +268,10 @@ BoundedMinimum ReducedDescent::MinimumFrom(const Eigen::VectorXd& x) {
 Eigen::MatrixXd ReducedDescent::ForcesOf(const Eigen::MatrixXd& directions) {
   const Eigen::Index n = directions.cols();
   Eigen::MatrixXd forces(displacement_.rows(), n * displacement_.cols());
-  const InternalForces& of_mesh = misfit_.SmallStrainModel().Forces();
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    if (n == 1) {
-      forces.col(k) = of_mesh.Multiply(directions.col(0), displacement_.col(k));
-    } else {
-      forces.middleCols(n * k, n) =
-          of_mesh.Columns(displacement_.col(k)) * directions;
-    }
+    forces.middleCols(n * k, n) = misfit_.SmallStrainModel().Forces().Along(
+        directions, displacement_.col(k));
   }
   return forces;
 }
@@ -331,26 +328,33 @@ bool ReducedDescent::Check(const BoundedMinimum& minimum) {
   if (!SolveForAdjoint(residual, tolerance / std::sqrt(largest))) {
     return false;
   }
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(free.Size());
+  const Eigen::VectorXd gradient = GradientWithin(minimum.on_bound);
+  step_ = Norm(InnerProducts(whitened, gradient)) / noise;
+  return std::isfinite(step_);
+}
+
+Eigen::VectorXd ReducedDescent::GradientWithin(
+    const std::vector<Side>& on_bound) {
+  const Eigen::Index n = directions_.cols();
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
   const Eigen::Index at_a_time = NumVariablesAtATime();
-  for (Eigen::Index i = 0; i < free.Size(); i += at_a_time) {
+  for (Eigen::Index i = 0; i < n; i += at_a_time) {
     const Eigen::MatrixXd forces =
         ForcesOf(directions_.middleCols(i, at_a_time));
-    for (Eigen::Index k = 0; k < num_cases; ++k) {
+    for (Eigen::Index k = 0; k < adjoint_.cols(); ++k) {
       gradient.segment(i, at_a_time) -= InnerProducts(
           forces.middleCols(at_a_time * k, at_a_time), adjoint_.col(k));
     }
   }
   // A bound holds what the gradient drives against it.
-  for (Eigen::Index i = 0; i < free.Size(); ++i) {
-    const Side side = minimum.on_bound[i];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Side side = on_bound[i];
     if ((side == Side::kLower && gradient(i) > 0) ||
         (side == Side::kUpper && gradient(i) < 0)) {
       gradient(i) = 0;
     }
   }
-  step_ = Norm(InnerProducts(whitened, gradient)) / noise;
-  return std::isfinite(step_);
+  return gradient;
 }
 
 bool ReducedDescent::SolveForAdjoint(const Eigen::VectorXd& residual,
@@ -379,12 +383,8 @@ void ReducedDescent::Finish(const Eigen::VectorXd& x) {
   reduced_.ForgetBases();
   const Eigen::Index at_a_time = NumVariablesAtATime();
   for (Eigen::Index i = 0; i < n; i += at_a_time) {
-    Eigen::MatrixXd columns(sensitivities.rows(),
-                            at_a_time * displacement_.cols());
-    for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
-      columns.middleCols(at_a_time * k, at_a_time) =
-          sensitivities.middleCols(n * k + i, at_a_time);
-    }
+    const auto own = Eigen::seq(i, Eigen::last, n / at_a_time);
+    Eigen::MatrixXd columns = sensitivities(Eigen::all, own);
     Eigen::MatrixXd forces = ForcesOf(-directions_.middleCols(i, at_a_time));
     const Eigen::VectorXd energies =
         ColumnProducts(columns, forces).cwiseMax(0).cwiseSqrt().transpose();
@@ -394,10 +394,7 @@ void ReducedDescent::Finish(const Eigen::VectorXd& x) {
                    columns)) {
       return;
     }
-    for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
-      sensitivities.middleCols(n * k + i, at_a_time) =
-          columns.middleCols(at_a_time * k, at_a_time);
-    }
+    sensitivities(Eigen::all, own) = columns;
   }
   misfit_.Place(x, std::move(displacement_), std::move(sensitivities));
 }

@@ -128,8 +128,8 @@ class Refinement {
   /// errors decide that.
   bool AsksForDivision(Chain& chain) const;
   static void Describe(Chain& chain, SpaceFit* curved);
-  /// Begins at the displacements of `last`, a fit of coarser elements, where
-  /// there are some.
+  /// Begins, at large strains, with the displacements of `last`, a fit of
+  /// coarser elements. `last` gives back memory (SpaceFit::KeepMinimum).
   std::unique_ptr<SpaceFit> MinimizeOn(
       Scene scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {}, SpaceFit* last = nullptr) {

@@ -306,7 +306,8 @@ void SpaceFit::Minimize(Descent descent,
   }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   estimate.work = estimate.work + (WorkDone() - before);
-  // A certificate would cost factors of the finest space.
+  // A certificate would need factors of the finest space, so other values of nu
+  // are tried instead.
   if (!start && fit_.minimum && descent == Descent::kReduced &&
       options_.loss == Loss::kNone && !misfit_.HasLargeStrains() &&
       misfit_.SmallStrainModel().IsRefined() &&
@@ -332,17 +333,18 @@ void SpaceFit::MinimizeAlsoFrom(
     Descent descent,
     const std::vector<std::optional<Eigen::VectorXd>>& starts) {
   MaterialFit best = fit_;
-  const Work of_found = fit_.estimate.work;
-  const Work before = WorkDone();
+  Work work = fit_.estimate.work;
   for (const std::optional<Eigen::VectorXd>& start : starts) {
     Minimize(descent, start);
+    work = work + fit_.estimate.work;
     if (fit_.minimum && fit_.minimum->cost < best.minimum->cost) {
       best = fit_;
     }
   }
   fit_ = best;
+  const Work before = WorkDone();
   EnterMinimum();
-  fit_.estimate.work = of_found + (WorkDone() - before);
+  fit_.estimate.work = work + (WorkDone() - before);
 }
 
 void SpaceFit::EnterMinimum() {

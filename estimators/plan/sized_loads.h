@@ -24,8 +24,8 @@ struct SizedLoads {
   std::vector<SizedCandidate> candidates;
 };
 
-/// The elements of a plan: those of the mesh, or quadratic ones in place of
-/// linear ones where displacements are to be measured, as in fits.
+/// The elements of a plan: the elements of the mesh, or those of fits, which
+/// are quadratic ones in place of linear ones if displacements are measured.
 enum class PlannedElements { kOfMesh, kOfFits };
 
 /// Returns the expected information at the size that candidates are taken at;

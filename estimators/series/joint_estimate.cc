@@ -604,8 +604,8 @@ bool IsOfShearModulus(const std::vector<FrameEstimate>& frames) {
          std::count_if(frames.begin(), frames.end(), is_usable);
 }
 
-// Returns a frame whose only parameter is the shear modulus; one that is not
-// usable where there is none.
+// Returns a frame whose only parameter is the shear modulus. It is not usable
+// if this frame has none.
 FrameEstimate FrameOfShearModulus(const FrameEstimate& frame) {
   FrameEstimate of_it = {frame.load, {}, frame.likeness, frame.num_alike};
   const Estimate& estimate = frame.estimate;

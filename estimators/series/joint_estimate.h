@@ -60,7 +60,7 @@ struct LoadError {
 ///
 /// If most of the usable frames determine the shear modulus alone
 /// (Estimate::shear_modulus), y is its logarithm, and E and nu are those of the
-/// frame that knows it best.
+/// frame with the least relative error of the shear modulus.
 ///
 /// Estimate::series has the number of frames and how the parameters change
 /// with the load, or from the first frame to the last where loads are the same

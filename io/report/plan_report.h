@@ -27,8 +27,9 @@ struct PlanBasis {
   /// The load case of each candidate in the scene, from 1 on; 0 for a candidate
   /// that is not in the scene.
   std::vector<int> load_case_of_candidate;
-  /// The standard errors of free parameters, of all causes, in the estimate of
-  /// what has been measured; empty without a usable estimate.
+  /// The standard errors, from all causes, of the free parameters in the
+  /// estimate of the measured load cases. Empty where there is no usable
+  /// estimate.
   std::vector<double> errors_of_estimate = {};
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/loads.h"
@@ -24,6 +25,12 @@ using ::testing::HasSubstr;
 using testing::HeldAtBottom;
 using testing::RandomMatrix;
 using testing::SmallScene;
+
+std::vector<SolverKind> KindsThereAre() {
+  return HasMultigrid() ? std::vector<SolverKind>{SolverKind::kCholesky,
+                                                  SolverKind::kMultigrid}
+                        : std::vector<SolverKind>{SolverKind::kCholesky};
+}
 
 TEST(StiffnessSolver, SolvesOnTheFreeDegreesOfFreedom) {
   const Scene scene = SmallScene("organ");
@@ -60,11 +67,7 @@ TEST(StiffnessSolver, CountsItsWorkAndDoesNoneTwice) {
 TEST(StiffnessSolver, SharesMemoryInTurns) {
   const Scene scene = SmallScene("organ");
   const Eigen::MatrixXd forces = RandomMatrix(3 * scene.mesh.NumNodes(), 2, 1);
-  for (const SolverKind kind :
-       {SolverKind::kCholesky, SolverKind::kMultigrid}) {
-    if (kind == SolverKind::kMultigrid && !HasMultigrid()) {
-      continue;
-    }
+  for (const SolverKind kind : KindsThereAre()) {
     StiffnessSolver first(scene.mesh, scene.supports, kind);
     StiffnessSolver second = first.Sharing();
     const InternalForces of_mesh(scene.mesh, {});
@@ -102,11 +105,7 @@ TEST(StiffnessSolver, SharesMemoryInTurns) {
 TEST(StiffnessSolver, SolvesAgainAfterItKeptThePreconditionerAlone) {
   const Scene scene = SmallScene("organ");
   const Eigen::MatrixXd forces = RandomMatrix(3 * scene.mesh.NumNodes(), 2, 1);
-  for (const SolverKind kind :
-       {SolverKind::kCholesky, SolverKind::kMultigrid}) {
-    if (kind == SolverKind::kMultigrid && !HasMultigrid()) {
-      continue;
-    }
+  for (const SolverKind kind : KindsThereAre()) {
     StiffnessSolver solver(scene.mesh, scene.supports, kind);
     ASSERT_TRUE(solver.Factorize(0.3));
     const Eigen::MatrixXd solution = solver.Solve(forces);
