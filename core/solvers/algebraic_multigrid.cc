@@ -97,7 +97,7 @@ bool AlgebraicMultigrid::Factorize() {
 
 bool AlgebraicMultigrid::SetUp() {
   cycle_.clear();
-  restrictions_.clear();
+  by_column_.clear();
   spaces_ = {};  // Its memory is needed.
   rows_.FreeMatrix();
   ++num_set_ups_;
@@ -111,7 +111,7 @@ bool AlgebraicMultigrid::SetUp() {
   ReturnFreeMemory();
   MakeHalos();
   for (const DividedMatrix& interpolation : spaces_.interpolations) {
-    restrictions_.push_back(Transposed(interpolation.rows));
+    by_column_.push_back(OrderByColumn(interpolation.rows));
   }
   for (std::size_t i = 1; i < spaces_.matrices.size(); ++i) {
     if (!AddSpace(spaces_.matrices[i])) {
@@ -178,8 +178,9 @@ bool AlgebraicMultigrid::AddSpace(const DividedMatrix& matrix) {
     return Multiply(matrix, x);
   };
   space.restrict = [&from = spaces_.interpolations[coarser],
-                    &to = restrictions_[coarser]](const Eigen::MatrixXd& x) {
-    return MultiplyTransposed(from, to, x);
+                    &by_column =
+                        by_column_[coarser]](const Eigen::MatrixXd& x) {
+    return MultiplyTransposed(from, by_column, x);
   };
   space.interpolate = [this, is_finest,
                        coarser](const Eigen::MatrixXd& x) -> Eigen::MatrixXd {

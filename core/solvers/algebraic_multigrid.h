@@ -61,7 +61,7 @@ class AlgebraicMultigrid {
   MultigridRows& rows_;
   FindSpaces find_spaces_;
   MultigridSpaces spaces_;
-  std::vector<BlockMatrix> restrictions_;  ///< The interpolations, transposed.
+  std::vector<BlocksByColumn> by_column_;  ///< The blocks of interpolations.
   std::vector<CycleSpace> cycle_;
   /// The factor of the whole coarsest matrix, of which each rank has a copy.
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 // The first part of this file is compiled once for each kind of processor, and
@@ -149,19 +150,63 @@ HWY_INLINE void MultiplyRowsOfAnySize(const BlockMatrix& a, Eigen::Index begin,
     MultiplyRows<kWithRest, 3, 3>(a, begin, end, x, products);
   } else if (size == std::pair(3, 6)) {
     MultiplyRows<kWithRest, 3, 6>(a, begin, end, x, products);
-  } else if (size == std::pair(6, 3)) {
-    MultiplyRows<kWithRest, 6, 3>(a, begin, end, x, products);
   } else if (size == std::pair(6, 6)) {
     MultiplyRows<kWithRest, 6, 6>(a, begin, end, x, products);
   } else if (size == std::pair(2, 2)) {
     MultiplyRows<kWithRest, 2, 2>(a, begin, end, x, products);
   } else if (size == std::pair(2, 3)) {
     MultiplyRows<kWithRest, 2, 3>(a, begin, end, x, products);
-  } else if (size == std::pair(3, 2)) {
-    MultiplyRows<kWithRest, 3, 2>(a, begin, end, x, products);
   } else {
     assert(size == std::pair(1, 1));
     MultiplyRows<kWithRest, 1, 1>(a, begin, end, x, products);
+  }
+}
+
+template <int kRows, int kColumns>
+HWY_INLINE void MultiplyTransposedColumns(const BlockMatrix& a,
+                                          const BlocksByColumn& by_column,
+                                          Eigen::Index begin, Eigen::Index end,
+                                          const Eigen::MatrixXd& x,
+                                          Eigen::MatrixXd& products) {
+  for (Eigen::Index j = begin; j < end; ++j) {
+    for (Eigen::Index n = 0; n < x.cols(); ++n) {
+      double sums[kColumns] = {};
+      for (Eigen::Index k = by_column.start[j]; k < by_column.start[j + 1];
+           ++k) {
+        const float* const entries =
+            a.entries.data() +
+            Eigen::Index{by_column.block[k]} * kRows * kColumns;
+        const double* const values =
+            x.data() + n * x.rows() + Eigen::Index{by_column.row[k]} * kRows;
+        for (int c = 0; c < kColumns; ++c) {
+          for (int r = 0; r < kRows; ++r) {
+            sums[c] += double{entries[c * kRows + r]} * values[r];
+          }
+        }
+      }
+      std::copy_n(sums, kColumns,
+                  products.data() + n * products.rows() + kColumns * j);
+    }
+  }
+}
+
+void MultiplyTransposedColumnsOfAnySize(const BlockMatrix& a,
+                                        const BlocksByColumn& by_column,
+                                        Eigen::Index begin, Eigen::Index end,
+                                        const Eigen::MatrixXd& x,
+                                        Eigen::MatrixXd& products) {
+  const std::pair size(a.block_rows, a.block_columns);
+  if (size == std::pair(3, 6)) {
+    MultiplyTransposedColumns<3, 6>(a, by_column, begin, end, x, products);
+  } else if (size == std::pair(6, 6)) {
+    MultiplyTransposedColumns<6, 6>(a, by_column, begin, end, x, products);
+  } else if (size == std::pair(2, 3)) {
+    MultiplyTransposedColumns<2, 3>(a, by_column, begin, end, x, products);
+  } else if (size == std::pair(3, 3)) {
+    MultiplyTransposedColumns<3, 3>(a, by_column, begin, end, x, products);
+  } else {
+    assert(size == std::pair(1, 1));
+    MultiplyTransposedColumns<1, 1>(a, by_column, begin, end, x, products);
   }
 }
 
@@ -188,39 +233,62 @@ namespace elastimate {
 
 HWY_EXPORT(MultiplyRowsOnce);
 HWY_EXPORT(MultiplyRowsWithRest);
+HWY_EXPORT(MultiplyTransposedColumnsOfAnySize);
 
 namespace {
 
-template <class MultiplyRows>
-Eigen::MatrixXd MultiplyInParallel(const BlockMatrix& a,
-                                   const Eigen::MatrixXd& x,
-                                   const MultiplyRows& multiply_rows) {
-  assert(x.rows() == a.num_columns);
+// Calls multiply(begin, end) for ranges that cover these rows or columns of
+// blocks once.
+template <class Multiply>
+void ForRanges(Eigen::Index size, std::size_t num_entries,
+               const Multiply& multiply) {
   // To start the threads takes about as long as to multiply so many entries,
   // which are counted because coarse spaces have few but long rows.
   constexpr std::size_t kFewEntries = 200000;
   constexpr Eigen::Index kMostParts = 512;
-  Eigen::MatrixXd products(a.NumRows(), x.cols());
-  const Eigen::Index num_rows = a.NumBlockRows();
-  const Eigen::Index rows_at_once = num_rows / kMostParts + 1;
-#pragma omp parallel for schedule(static) if (a.entries.size() > kFewEntries)
-  for (Eigen::Index begin = 0; begin < num_rows; begin += rows_at_once) {
-    multiply_rows(a, begin, std::min(num_rows, begin + rows_at_once), x,
-                  products);
+  const Eigen::Index at_once = size / kMostParts + 1;
+#pragma omp parallel for schedule(static) if (num_entries > kFewEntries)
+  for (Eigen::Index begin = 0; begin < size; begin += at_once) {
+    multiply(begin, std::min(size, begin + at_once));
   }
+}
+
+template <class MultiplyRows>
+Eigen::MatrixXd MultiplyBy(const BlockMatrix& a, const Eigen::MatrixXd& x,
+                           const MultiplyRows& multiply_rows) {
+  assert(x.rows() == a.num_columns);
+  Eigen::MatrixXd products(a.NumRows(), x.cols());
+  ForRanges(a.NumBlockRows(), a.entries.size(),
+            [&](Eigen::Index begin, Eigen::Index end) {
+              multiply_rows(a, begin, end, x, products);
+            });
   return products;
 }
 
 }  // namespace
 
 Eigen::MatrixXd Multiply(const BlockMatrix& a, const Eigen::MatrixXd& x) {
-  return MultiplyInParallel(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsOnce));
+  return MultiplyBy(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsOnce));
 }
 
 Eigen::MatrixXd MultiplyAccurately(const BlockMatrix& a,
                                    const Eigen::MatrixXd& x) {
   assert(a.rest.size() == a.entries.size());
-  return MultiplyInParallel(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsWithRest));
+  return MultiplyBy(a, x, HWY_DYNAMIC_DISPATCH(MultiplyRowsWithRest));
+}
+
+Eigen::MatrixXd MultiplyTransposed(const BlockMatrix& a,
+                                   const BlocksByColumn& by_column,
+                                   const Eigen::MatrixXd& x) {
+  assert(x.rows() == a.NumRows());
+  Eigen::MatrixXd products(a.num_columns, x.cols());
+  const auto multiply_columns =
+      HWY_DYNAMIC_DISPATCH(MultiplyTransposedColumnsOfAnySize);
+  ForRanges(a.num_columns / a.block_columns, a.entries.size(),
+            [&](Eigen::Index begin, Eigen::Index end) {
+              multiply_columns(a, by_column, begin, end, x, products);
+            });
+  return products;
 }
 
 BlockMatrix RowsOf(const BlockMatrix& a, Eigen::Index first, Eigen::Index end) {
@@ -244,32 +312,22 @@ BlockMatrix RowsOf(const BlockMatrix& a, Eigen::Index first, Eigen::Index end) {
   return result;
 }
 
-BlockMatrix Transposed(const BlockMatrix& a) {
-  BlockMatrix result;
-  result.block_rows = a.block_columns;
-  result.block_columns = a.block_rows;
-  result.num_columns = a.NumRows();
+BlocksByColumn OrderByColumn(const BlockMatrix& a) {
+  BlocksByColumn result;
   result.start.assign(a.num_columns / a.block_columns + 1, 0);
   for (const int column : a.column) {
     ++result.start[column + 1];
   }
-  for (std::size_t j = 1; j < result.start.size(); ++j) {
-    result.start[j] += result.start[j - 1];
-  }
+  std::partial_sum(result.start.begin(), result.start.end(),
+                   result.start.begin());
   std::vector<Eigen::Index> next(result.start.begin(), result.start.end() - 1);
-  result.column.resize(a.column.size());
-  result.entries.resize(a.entries.size());
-  const Eigen::Index size = Eigen::Index{a.block_rows} * a.block_columns;
+  result.row.resize(a.column.size());
+  result.block.resize(a.column.size());
   for (Eigen::Index i = 0; i < a.NumBlockRows(); ++i) {
     for (Eigen::Index k = a.start[i]; k < a.start[i + 1]; ++k) {
       const Eigen::Index to = next[a.column[k]]++;
-      result.column[to] = static_cast<int>(i);
-      for (Eigen::Index r = 0; r < a.block_rows; ++r) {
-        for (Eigen::Index c = 0; c < a.block_columns; ++c) {
-          result.entries[to * size + r * a.block_columns + c] =
-              a.entries[k * size + c * a.block_rows + r];
-        }
-      }
+      result.row[to] = static_cast<int>(i);
+      result.block[to] = static_cast<int>(k);
     }
   }
   return result;

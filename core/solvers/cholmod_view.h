@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <vector>
 
 namespace elastimate {
 
@@ -14,16 +15,14 @@ static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 /// A view of arrays of the caller as a symmetric matrix of which the lower
 /// triangle is stored, or of its pattern where there are no values; CHOLMOD
 /// does not write to it.
-inline cholmod_sparse SymmetricView(const std::int64_t* column_start,
-                                    const std::int64_t* row,
-                                    const double* values, std::size_t size,
-                                    std::size_t num_values) {
+inline cholmod_sparse SymmetricView(
+    const std::vector<std::int64_t>& column_start,
+    const std::vector<std::int64_t>& row, const double* values) {
   cholmod_sparse view{};
-  view.nrow = size;
-  view.ncol = size;
-  view.nzmax = num_values;
-  view.p = const_cast<std::int64_t*>(column_start);
-  view.i = const_cast<std::int64_t*>(row);
+  view.nrow = view.ncol = column_start.size() - 1;
+  view.nzmax = row.size();
+  view.p = const_cast<std::int64_t*>(column_start.data());
+  view.i = const_cast<std::int64_t*>(row.data());
   view.x = const_cast<double*>(values);
   view.stype = -1;
   view.itype = CHOLMOD_LONG;

@@ -42,10 +42,10 @@ Eigen::MatrixXd Multiply(const DividedMatrix& a, const Eigen::MatrixXd& x) {
 }
 
 Eigen::MatrixXd MultiplyTransposed(const DividedMatrix& a,
-                                   const BlockMatrix& transposed,
+                                   const BlocksByColumn& by_column,
                                    const Eigen::MatrixXd& x) {
-  return a.halo ? a.halo->Added(Multiply(transposed, x))
-                : Multiply(transposed, x);
+  return a.halo ? a.halo->Added(MultiplyTransposed(a.rows, by_column, x))
+                : MultiplyTransposed(a.rows, by_column, x);
 }
 
 Eigen::MatrixXd MultiplyAccurately(const DividedMatrix& a,

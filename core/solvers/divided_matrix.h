@@ -31,10 +31,9 @@ void MakeHalo(Eigen::Index first_own, Eigen::Index num_own, const Ranks& ranks,
 /// The rows of A X, A^T X and, with the `rest` of A, (A + rest) X.
 [[nodiscard]] Eigen::MatrixXd Multiply(const DividedMatrix& a,
                                        const Eigen::MatrixXd& x);
-/// `transposed` are the rows of A, transposed.
-[[nodiscard]] Eigen::MatrixXd MultiplyTransposed(const DividedMatrix& a,
-                                                 const BlockMatrix& transposed,
-                                                 const Eigen::MatrixXd& x);
+[[nodiscard]] Eigen::MatrixXd MultiplyTransposed(
+    const DividedMatrix& a, const BlocksByColumn& by_column,
+    const Eigen::MatrixXd& x);
 [[nodiscard]] Eigen::MatrixXd MultiplyAccurately(const DividedMatrix& a,
                                                  const Eigen::MatrixXd& x);
 

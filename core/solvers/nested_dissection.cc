@@ -14,8 +14,7 @@ std::vector<std::int64_t> NestedDissection(
   cholmod_common common;
   cholmod_l_start(&common);
   common.print = 0;
-  cholmod_sparse pattern =
-      SymmetricView(start.data(), row.data(), nullptr, size, row.size());
+  cholmod_sparse pattern = SymmetricView(start, row, nullptr);
   std::vector<SuiteSparse_long> order(size);
   {
     // METIS seeds and draws from rand(), whose state threads share: at once,

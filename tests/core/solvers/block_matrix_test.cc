@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <string>
 #include <tuple>
 
 #include "tests/core/random_values.h"
@@ -58,15 +59,24 @@ class BlocksOfSize : public ::testing::TestWithParam<std::tuple<int, int>> {
   BlockMatrix a_;
 };
 
+using BlocksOfInterpolations = BlocksOfSize;
+
+std::string NameOfSize(
+    const ::testing::TestParamInfo<std::tuple<int, int>>& info) {
+  return std::to_string(std::get<0>(info.param)) + "x" +
+         std::to_string(std::get<1>(info.param));
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, BlocksOfSize,
                          ::testing::Values(std::tuple(1, 1), std::tuple(2, 2),
-                                           std::tuple(2, 3), std::tuple(3, 2),
+                                           std::tuple(2, 3), std::tuple(3, 3),
+                                           std::tuple(3, 6), std::tuple(6, 6)),
+                         NameOfSize);
+INSTANTIATE_TEST_SUITE_P(Sizes, BlocksOfInterpolations,
+                         ::testing::Values(std::tuple(1, 1), std::tuple(2, 3),
                                            std::tuple(3, 3), std::tuple(3, 6),
-                                           std::tuple(6, 3), std::tuple(6, 6)),
-                         [](const auto& info) {
-                           return std::to_string(std::get<0>(info.param)) +
-                                  "x" + std::to_string(std::get<1>(info.param));
-                         });
+                                           std::tuple(6, 6)),
+                         NameOfSize);
 
 TEST_P(BlocksOfSize, AreMultipliedAsADenseMatrix) {
   for (const int num_columns : {0, 1, 4, 7}) {
@@ -104,13 +114,14 @@ TEST_P(BlocksOfSize, HandOutSomeOfTheirRows) {
   }
 }
 
-TEST_P(BlocksOfSize, AreTransposed) {
-  const BlockMatrix transposed = Transposed(a_);
-  EXPECT_EQ(Dense(transposed), Dense(a_).transpose());
-  const Eigen::MatrixXd x = RandomMatrix(a_.NumRows(), 2, 3);
-  const Eigen::MatrixXd expected = Dense(a_).transpose() * x;
-  EXPECT_LE((Multiply(transposed, x) - expected).norm(),
-            1e-13 * expected.norm());
+TEST_P(BlocksOfInterpolations, AreMultipliedTransposed) {
+  const BlocksByColumn by_column = OrderByColumn(a_);
+  for (const int num_columns : {0, 1, 4}) {
+    const Eigen::MatrixXd x = RandomMatrix(a_.NumRows(), num_columns, 3);
+    const Eigen::MatrixXd expected = Dense(a_).transpose() * x;
+    EXPECT_LE((MultiplyTransposed(a_, by_column, x) - expected).norm(),
+              1e-13 * expected.norm());
+  }
 }
 
 TEST(BlockMatrix, HandsOutTheBlocksOnItsDiagonal) {

@@ -71,11 +71,12 @@ TEST(DividedMatrix, AddsWhatOtherRanksHave) {
   DividedMatrix a = {MiddleRows(), nullptr};
   const Eigen::MatrixXd x = testing::RandomMatrix(2, 2, 2);
   const Eigen::MatrixXd expected =
-      Multiply(Transposed(a.rows), x).middleRows(2, 2) + all.middleRows(2, 2);
+      MultiplyTransposed(a.rows, OrderByColumn(a.rows), x).middleRows(2, 2) +
+      all.middleRows(2, 2);
   a.halo = std::make_shared<WholeVector>(2, all,
                                          NumberOwnColumnsFirst(2, 2, a.rows));
-  EXPECT_TRUE(
-      MultiplyTransposed(a, Transposed(a.rows), x).isApprox(expected, 1e-14));
+  EXPECT_TRUE(MultiplyTransposed(a, OrderByColumn(a.rows), x)
+                  .isApprox(expected, 1e-14));
 }
 
 TEST(DividedMatrix, IsWholeWithoutAHalo) {
