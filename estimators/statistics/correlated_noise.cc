@@ -19,90 +19,85 @@ namespace {
 
 constexpr Eigen::Index kMostPoints = 20000;
 
-// Rows of one component of one load case, by the place along the longest axis
-// of the mesh.
-struct RowsOfComponent {
-  std::vector<Eigen::Index> rows;
-  Eigen::MatrixXd positions;  // dimension x rows.size()
+// The points of one load case, by their place along the longest axis of the
+// mesh.
+struct PointsOfCase {
+  Eigen::Matrix3Xd positions;  ///< The last row is zero in a planar scene.
   Eigen::Index axis = 0;
+  /// The rows of their components; -1 for components that are not observed.
+  Eigen::Matrix<Eigen::Index, 3, Eigen::Dynamic> rows;
   /// Points for each that is looked at.
-  double points_per_row = 1;
+  double points_per_point = 1;
+
+  Eigen::Index Size() const { return positions.cols(); }
 };
 
-Eigen::VectorXd PositionOf(const Scene& scene,
-                           const ObservedDisplacements::Point& point,
-                           const Eigen::MatrixXd& of_points) {
-  const Eigen::Index num_nodes = scene.mesh.NumNodes();
-  return point.index < num_nodes ? scene.mesh.nodes.col(point.index)
-                                 : of_points.col(point.index - num_nodes);
-}
-
-void SortByPosition(const Mesh& mesh, RowsOfComponent& rows) {
-  Eigen::Index axis = 0;
+void SortByPosition(const Mesh& mesh, PointsOfCase& points) {
   (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-      .maxCoeff(&axis);
-  std::vector<Eigen::Index> order(rows.rows.size());
+      .maxCoeff(&points.axis);
+  std::vector<Eigen::Index> order(points.Size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return rows.positions(axis, a) < rows.positions(axis, b);
+    return points.positions(points.axis, a) < points.positions(points.axis, b);
   });
-  rows.axis = axis;
-  rows.positions = rows.positions(Eigen::all, order).eval();
-  std::vector<Eigen::Index> sorted;
-  sorted.reserve(order.size());
-  for (const Eigen::Index i : order) {
-    sorted.push_back(rows.rows[i]);
-  }
-  rows.rows = std::move(sorted);
+  points.positions = points.positions(Eigen::all, order).eval();
+  points.rows = points.rows(Eigen::all, order).eval();
 }
 
-std::vector<RowsOfComponent> SplitRows(const Scene& scene,
-                                       const ObservedDisplacements& observed) {
-  const int dimension = scene.mesh.Dimension();
-  std::vector<RowsOfComponent> all(observed.NumLoadCases() * dimension);
+PointsOfCase PointsOf(const Scene& scene, const ObservedDisplacements& observed,
+                      Eigen::Index k) {
+  const Mesh& mesh = scene.mesh;
+  const MeshPoints& off_nodes = scene.load_cases[k].points.points;
+  const Eigen::MatrixXd of_points =
+      off_nodes.Size() == 0 ? Eigen::MatrixXd(mesh.Dimension(), 0)
+                            : Interpolate(mesh, off_nodes, mesh.nodes);
+  std::vector<const ObservedDisplacements::Point*> of_case;
+  for (const auto& point : observed.Points()) {
+    if (point.load_case == k) {
+      of_case.push_back(&point);
+    }
+  }
+  PointsOfCase points;
+  const Eigen::Index num_points = Eigen::Index(of_case.size());
+  const Eigen::Index stride =
+      1 + std::max(num_points - 1, Eigen::Index{0}) / kMostPoints;
+  const Eigen::Index size = (num_points + stride - 1) / stride;
+  points.points_per_point = static_cast<double>(stride);
+  points.positions.setZero(3, size);
+  points.rows.setConstant(3, size, -1);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const ObservedDisplacements::Point& point = *of_case[stride * i];
+    points.positions.col(i).head(mesh.Dimension()) =
+        point.index < mesh.NumNodes()
+            ? mesh.nodes.col(point.index)
+            : of_points.col(point.index - mesh.NumNodes());
+    for (Eigen::Index row = point.first; row < point.first + point.count;
+         ++row) {
+      points.rows(observed.Component(row), i) = row;
+    }
+  }
+  SortByPosition(mesh, points);
+  return points;
+}
+
+std::vector<PointsOfCase> PointsOfCases(const Scene& scene,
+                                        const ObservedDisplacements& observed) {
+  std::vector<PointsOfCase> all;
   for (Eigen::Index k = 0; k < observed.NumLoadCases(); ++k) {
-    const MeshPoints& points = scene.load_cases[k].points.points;
-    const Eigen::MatrixXd of_points =
-        points.Size() == 0 ? Eigen::MatrixXd(dimension, 0)
-                           : Interpolate(scene.mesh, points, scene.mesh.nodes);
-    Eigen::Index num_points = 0;
-    for (const auto& point : observed.Points()) {
-      num_points += point.load_case == k ? 1 : 0;
-    }
-    const Eigen::Index stride = 1 + (num_points - 1) / kMostPoints;
-    std::vector<std::vector<Eigen::VectorXd>> positions(dimension);
-    Eigen::Index number = 0;
-    for (const auto& point : observed.Points()) {
-      if (point.load_case != k || number++ % stride != 0) {
-        continue;
-      }
-      for (int i = 0; i < point.count; ++i) {
-        const int component = observed.Component(point.first + i);
-        all[dimension * k + component].rows.push_back(point.first + i);
-        positions[component].push_back(PositionOf(scene, point, of_points));
-      }
-    }
-    for (int i = 0; i < dimension; ++i) {
-      RowsOfComponent& rows = all[dimension * k + i];
-      rows.points_per_row = static_cast<double>(stride);
-      rows.positions.resize(dimension, Eigen::Index(positions[i].size()));
-      for (std::size_t j = 0; j < positions[i].size(); ++j) {
-        rows.positions.col(Eigen::Index(j)) = positions[i][j];
-      }
-      SortByPosition(scene.mesh, rows);
-    }
+    all.push_back(PointsOf(scene, observed, k));
   }
   return all;
 }
 
 // The median distance of a point to its nearest neighbour.
-double SpacingOf(const std::vector<RowsOfComponent>& all) {
+double SpacingOf(const std::vector<PointsOfCase>& all) {
   std::vector<double> nearest;
-  for (const RowsOfComponent& rows : all) {
-    std::vector<double> distance(rows.rows.size(),
+  for (const PointsOfCase& points : all) {
+    std::vector<double> distance(points.Size(),
                                  std::numeric_limits<double>::infinity());
-    for (const auto& [a, b] : NearestPairs(rows.positions, 1)) {
-      const double d = (rows.positions.col(a) - rows.positions.col(b)).norm();
+    for (const auto& [a, b] : NearestPairs(points.positions, 1)) {
+      const double d =
+          (points.positions.col(a) - points.positions.col(b)).norm();
       distance[a] = std::min(distance[a], d);
       distance[b] = std::min(distance[b], d);
     }
@@ -113,18 +108,18 @@ double SpacingOf(const std::vector<RowsOfComponent>& all) {
   return *median;
 }
 
-// Visits the pairs whose distance is less than `reach`.
+// Calls visit(j, distance) for the points behind i that are nearer than
+// `reach`.
 template <class Visit>
-void VisitPairs(const RowsOfComponent& rows, double reach, const Visit& visit) {
-  const Eigen::Index n = rows.positions.cols();
-  const auto along = rows.positions.row(rows.axis);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = i + 1; j < n && along(j) - along(i) < reach; ++j) {
-      const double distance =
-          (rows.positions.col(i) - rows.positions.col(j)).norm();
-      if (distance < reach) {
-        visit(rows.rows[i], rows.rows[j], distance);
-      }
+void VisitNearPoints(const PointsOfCase& points, Eigen::Index i, double reach,
+                     const Visit& visit) {
+  const auto along = points.positions.row(points.axis);
+  for (Eigen::Index j = i + 1; j < points.Size() && along(j) - along(i) < reach;
+       ++j) {
+    const double distance =
+        (points.positions.col(i) - points.positions.col(j)).norm();
+    if (distance < reach) {
+      visit(j, distance);
     }
   }
 }
@@ -142,29 +137,39 @@ double ShareOfModel(const Mesh& mesh, double length) {
   return std::min(1.0, std::pow(8 * length / DiagonalOf(mesh.nodes), 4));
 }
 
-// Over pairs of rows by steps of their distance.
+// Sums over pairs of rows, with a column for each step of their distance.
 struct PairSums {
-  Eigen::VectorXd products;
-  Eigen::VectorXd square_distances;
-  Eigen::VectorXd counts;
+  enum { kProducts, kSquareDistances, kCounts };
+  Eigen::Array3Xd of_steps;
+
+  auto Products() const { return of_steps.row(kProducts); }
+  auto SquareDistances() const { return of_steps.row(kSquareDistances); }
+  auto Counts() const { return of_steps.row(kCounts); }
 };
 
-PairSums SumPairs(const std::vector<RowsOfComponent>& all,
+PairSums SumPairs(const std::vector<PointsOfCase>& all,
                   const Eigen::VectorXd& residual, double step,
                   Eigen::Index num_steps) {
-  PairSums sums = {Eigen::VectorXd::Zero(num_steps),
-                   Eigen::VectorXd::Zero(num_steps),
-                   Eigen::VectorXd::Zero(num_steps)};
-  for (const RowsOfComponent& rows : all) {
-    const double reach = static_cast<double>(num_steps) * step;
-    VisitPairs(rows, reach,
-               [&](Eigen::Index a, Eigen::Index b, double distance) {
-                 const auto k = std::min(
-                     static_cast<Eigen::Index>(distance / step), num_steps - 1);
-                 sums.products(k) += residual(a) * residual(b);
-                 sums.square_distances(k) += distance * distance;
-                 sums.counts(k) += 1;
-               });
+  PairSums sums = {Eigen::Array3Xd::Zero(3, num_steps)};
+  const double reach = static_cast<double>(num_steps) * step;
+  for (const PointsOfCase& points : all) {
+    Eigen::Matrix3Xd residuals = Eigen::Matrix3Xd::Zero(3, points.Size());
+    Eigen::Matrix3Xd are_observed = residuals;
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+      if (points.rows(i) >= 0) {
+        residuals(i) = residual(points.rows(i));
+        are_observed(i) = 1;
+      }
+    }
+    for (Eigen::Index i = 0; i < points.Size(); ++i) {
+      VisitNearPoints(points, i, reach, [&](Eigen::Index j, double distance) {
+        const double count = are_observed.col(i).dot(are_observed.col(j));
+        sums.of_steps.col(std::min(static_cast<Eigen::Index>(distance / step),
+                                   num_steps - 1)) +=
+            Eigen::Array3d(residuals.col(i).dot(residuals.col(j)),
+                           count * distance * distance, count);
+      });
+    }
   }
   return sums;
 }
@@ -172,11 +177,11 @@ PairSums SumPairs(const std::vector<RowsOfComponent>& all,
 // Returns rho up to where it is first not significant.
 Eigen::VectorXd SignificantValues(const PairSums& sums, double variance) {
   const Eigen::VectorXd values =
-      sums.products.cwiseQuotient(variance * sums.counts);
+      (sums.Products() / (variance * sums.Counts())).matrix();
   Eigen::Index last = 0;
-  while (last < values.size() && sums.counts(last) > 0 &&
+  while (last < values.size() && sums.Counts()(last) > 0 &&
          values(last) >=
-             kLimits.explained_score / std::sqrt(sums.counts(last))) {
+             kLimits.explained_score / std::sqrt(sums.Counts()(last))) {
     ++last;
   }
   return values.head(last);
@@ -202,7 +207,7 @@ void FillSmoothed(double first, double next, const Eigen::Vector2d& squares,
 Autocorrelation CorrelateResiduals(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const Eigen::VectorXd& residual) {
-  const std::vector<RowsOfComponent> all = SplitRows(scene, observed);
+  const std::vector<PointsOfCase> all = PointsOfCases(scene, observed);
   Autocorrelation correlation;
   correlation.step = SpacingOf(all);
   if (!(correlation.step > 0) || !std::isfinite(correlation.step) ||
@@ -228,14 +233,14 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
       break;
     }
   }
-  const Eigen::VectorXd& counts = sums.counts;
+  const auto counts = sums.Counts();
   correlation.values = values.cwiseMin(1.0);
   if (values.size() > 0 && num_steps > 1 && counts(1) > 0) {
     const double next =
-        std::max(sums.products(1) / (counts(1) * variance), 0.0) +
+        std::max(sums.Products()(1) / (counts(1) * variance), 0.0) +
         kTwoSidedErrors / std::sqrt(counts(1));
     FillSmoothed(values(0), next,
-                 sums.square_distances.head(2).cwiseQuotient(counts.head(2)),
+                 (sums.SquareDistances().head(2) / counts.head(2)).matrix(),
                  correlation);
   }
   return correlation;
@@ -252,19 +257,29 @@ Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
   }
   const double reach =
       static_cast<double>(correlation.values.size()) * correlation.step;
-  // By columns, so that those of a row are side by side.
-  const Eigen::MatrixXd by_row = sensitivities.transpose();
-  for (const RowsOfComponent& rows : SplitRows(scene, observed)) {
-    Eigen::MatrixXd of_component = Eigen::MatrixXd::Zero(m, m);
-    VisitPairs(
-        rows, reach, [&](Eigen::Index a, Eigen::Index b, double distance) {
-          const double rho = correlation.At(distance);
-          if (rho != 0) {
-            of_component += rho * by_row.col(a) * by_row.col(b).transpose();
-          }
-        });
-    sum += rows.points_per_row * rows.points_per_row *
-           (of_component + of_component.transpose());
+  for (const PointsOfCase& points : PointsOfCases(scene, observed)) {
+    // The rows of a point side by side.
+    Eigen::MatrixXd of_points = Eigen::MatrixXd::Zero(3 * m, points.Size());
+    for (Eigen::Index i = 0; i < points.Size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        if (points.rows(c, i) >= 0) {
+          of_points.col(i).segment(m * c, m) =
+              sensitivities.row(points.rows(c, i)).transpose();
+        }
+      }
+    }
+    Eigen::MatrixXd of_case = Eigen::MatrixXd::Zero(m, m);
+    Eigen::VectorXd others(3 * m);
+    for (Eigen::Index i = 0; i < points.Size(); ++i) {
+      others.setZero();
+      VisitNearPoints(points, i, reach, [&](Eigen::Index j, double distance) {
+        others += correlation.At(distance) * of_points.col(j);
+      });
+      of_case.noalias() +=
+          of_points.col(i).reshaped(m, 3) * others.reshaped(m, 3).transpose();
+    }
+    sum += points.points_per_point * points.points_per_point *
+           (of_case + of_case.transpose());
   }
   return sum;
 }
