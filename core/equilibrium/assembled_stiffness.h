@@ -28,8 +28,7 @@ class AssembledStiffness : public SupportedStiffness {
                  bool with_held_rows) override;
 
   using SupportedStiffness::Solve;
-  Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                        Eigen::MatrixXd start) override {
+  Eigen::MatrixXd Solve(Eigen::MatrixXd all, Eigen::MatrixXd start) override {
     return Solver().Solve(all, Tolerance(), start);
   }
 

@@ -161,13 +161,16 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
   directions_.resize(0, 0);
+  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
+    stiffness->Forget();
+  }
   values_->SetModuli(scaled);
   for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
     if (!stiffness->Factorize(*values_, has_unknown_motion_)) {
       return false;
     }
   }
-  values_->ForgetDiagonalBlocks();
+  values_->ForgetInverseBlocks();
   if (held_displacement_.size() == 0) {
     displacement_ = SolveFrom(displacement_, load_);
     return !displacement_.hasNaN();

@@ -44,11 +44,12 @@ void NestedStiffness::SetModuli(const Eigen::VectorXd& moduli) {
   moduli_ = moduli;
   for (std::size_t space = 1; space < NumSpaces(); ++space) {
     Finer& finer = finer_[space - 1];
-    finer.diagonal_blocks = forces_[space].DiagonalBlocks(moduli);
+    finer.inverse_blocks =
+        elastimate::InverseBlocks(forces_[space].DiagonalBlocks(moduli));
     int num_products = 0;
     finer.largest_eigenvalue = elastimate::LargestEigenvalue(
         [&](const Eigen::MatrixXd& x) { return Multiply(space, x); },
-        InverseBlocks(finer.diagonal_blocks, {}), num_products);
+        finer.inverse_blocks, num_products);
     if (space + 1 == NumSpaces()) {
       num_passes_ += num_products;
     }

@@ -54,15 +54,15 @@ class NestedStiffness {
                            const Eigen::MatrixXd& columns) const {
     return forces_[space].Multiply(moduli_, columns);
   }
-  /// Returns InternalForces::DiagonalBlocks of a finer space, until they are
-  /// forgotten.
-  const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
-    return finer_[space - 1].diagonal_blocks;
+  /// Returns the inverses of InternalForces::DiagonalBlocks of a finer space,
+  /// until they are forgotten.
+  const Eigen::MatrixXf& InverseBlocks(std::size_t space) const {
+    return finer_[space - 1].inverse_blocks;
   }
   /// Gives back their memory, which only RefinedStiffness::Factorize needs.
-  void ForgetDiagonalBlocks() {
+  void ForgetInverseBlocks() {
     for (Finer& finer : finer_) {
-      finer.diagonal_blocks.resize(0, 0);
+      finer.inverse_blocks.resize(0, 0);
     }
   }
   /// Returns LargestEigenvalue of a finer space without supports.  Supports do
@@ -76,7 +76,7 @@ class NestedStiffness {
 
  private:
   struct Finer {
-    Eigen::MatrixXd diagonal_blocks;
+    Eigen::MatrixXf inverse_blocks;
     double largest_eigenvalue = 0;
   };
 

@@ -46,8 +46,8 @@ bool RefinedStiffness::SetUpCycle() {
     if (!(space.largest_eigenvalue > 0)) {
       return false;
     }
-    space.inverse_blocks =
-        InverseBlocks(stiffness_->DiagonalBlocks(i), HeldRowsIn(i));
+    space.inverse_blocks = stiffness_->InverseBlocks(i);
+    HoldInInverses(HeldRowsIn(i), space.inverse_blocks);
     space.multiply = [this, i](const Eigen::MatrixXd& x) {
       return Multiply(i, x);
     };
@@ -67,7 +67,7 @@ bool RefinedStiffness::FactorizeFinest() {
       stiffness_->Blocks(Finest(), finest_->Graph()));
 }
 
-ConjugateGradientResult RefinedStiffness::Iterate(const Eigen::MatrixXd& all,
+ConjugateGradientResult RefinedStiffness::Iterate(Eigen::MatrixXd all,
                                                   Eigen::MatrixXd start) {
   if (start.size() > 0) {
     start = OfFree(Finest(), std::move(start));
@@ -78,29 +78,33 @@ ConjugateGradientResult RefinedStiffness::Iterate(const Eigen::MatrixXd& all,
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(
       [&](const Eigen::MatrixXd& x) { return Multiply(Finest(), x); },
-      [&](const Eigen::MatrixXd& x) { return Cycle(x); }, OfFree(Finest(), all),
-      std::move(start), options);
+      [&](const Eigen::MatrixXd& x) { return Cycle(x); },
+      OfFree(Finest(), std::move(all)), std::move(start), options);
   work_.iterations += result.iterations;
   return result;
 }
 
-Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
+Eigen::MatrixXd RefinedStiffness::Solve(Eigen::MatrixXd all,
                                         Eigen::MatrixXd start) {
   work_.solves += static_cast<int>(all.cols());
   if (finest_) {
     return finest_->Solve(all, StiffnessSolver::kAccurate, start);
   }
-  ConjugateGradientResult result = Iterate(all, std::move(start));
+  ConjugateGradientResult result = Iterate(std::move(all), std::move(start));
   // Coarse spaces may be those of other moduli.
   if (!result.has_converged && coarsest_.Renew()) {
-    result = Iterate(all, std::move(result.solution));
+    const Eigen::MatrixXd found = std::move(result.solution);
+    result = Iterate(std::move(result.residual), {});
+    result.solution += found;
   }
   if (!result.has_converged) {
     finest_ = make_finest_();
-    return FactorizeFinest() ? finest_->Solve(all)
-                             : Eigen::MatrixXd::Constant(
-                                   all.rows(), all.cols(),
-                                   std::numeric_limits<double>::quiet_NaN());
+    result.solution += FactorizeFinest()
+                           ? finest_->Solve(result.residual)
+                           : Eigen::MatrixXd::Constant(
+                                 result.solution.rows(), result.solution.cols(),
+                                 std::numeric_limits<double>::quiet_NaN());
+    return std::move(result.solution);
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
   return std::move(result.solution);

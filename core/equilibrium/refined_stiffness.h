@@ -39,13 +39,13 @@ class RefinedStiffness : public SupportedStiffness {
 
   bool Factorize(const NestedStiffness& stiffness,
                  bool with_held_rows) override;
+  void Forget() override { cycle_.clear(); }
 
   /// An iteration takes five element passes of the finest space, four of each
   /// one between, and StiffnessSolver::Precondition on the coarsest, for all
   /// columns.
   using SupportedStiffness::Solve;
-  Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                        Eigen::MatrixXd start) override;
+  Eigen::MatrixXd Solve(Eigen::MatrixXd all, Eigen::MatrixXd start) override;
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all) override;
 
   Eigen::MatrixXd HeldForces(
@@ -72,8 +72,7 @@ class RefinedStiffness : public SupportedStiffness {
   }
   /// Returns the values with zeros in the held rows of a space.
   Eigen::MatrixXd OfFree(std::size_t space, Eigen::MatrixXd values) const;
-  ConjugateGradientResult Iterate(const Eigen::MatrixXd& all,
-                                  Eigen::MatrixXd start);
+  ConjugateGradientResult Iterate(Eigen::MatrixXd all, Eigen::MatrixXd start);
   bool FactorizeFinest();
   /// Sets up the V-cycle over the finer spaces.  Returns whether K is positive
   /// definite there, as far as it is seen.

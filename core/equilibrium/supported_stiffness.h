@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/equilibrium/nested_stiffness.h"
@@ -27,13 +28,17 @@ class SupportedStiffness {
   virtual bool Factorize(const NestedStiffness& stiffness,
                          bool with_held_rows) = 0;
 
+  /// Gives back memory of which the next Factorize makes no use.
+  virtual void Forget() {}
+
   /// Returns K_ff^-1 times the free rows of each column of `all`, and zeros in
   /// the held rows; NaN where no solver converges.  `start` is empty or
   /// has a guess of each column, scaled in any way, which spares iterations
   /// where it is good.  Precondition, here and below: Factorize returned true.
-  virtual Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
-                                Eigen::MatrixXd start) = 0;
-  Eigen::MatrixXd Solve(const Eigen::MatrixXd& all) { return Solve(all, {}); }
+  virtual Eigen::MatrixXd Solve(Eigen::MatrixXd all, Eigen::MatrixXd start) = 0;
+  Eigen::MatrixXd Solve(Eigen::MatrixXd all) {
+    return Solve(std::move(all), {});
+  }
 
   /// Does what Solve does as far as one application of the preconditioner does
   /// it, where there is no factor; symmetric and positive definite.

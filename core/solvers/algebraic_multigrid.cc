@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "elastimate/core/solvers/free_memory.h"
@@ -197,14 +198,12 @@ bool AlgebraicMultigrid::AddSpace(const DividedMatrix& matrix) {
     scale_ = trace(0) / diagonal_of_spaces_;
   }
   // Blocks of coarse spaces may be singular, as their modes may be.
-  std::vector<Eigen::Index> held;
-  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-    if (!(diagonal(i) > 0)) {
-      held.push_back(i);
-    }
-  }
   space.inverse_blocks =
-      InverseBlocks(is_finest ? blocks : Eigen::MatrixXd(diagonal), held);
+      is_finest
+          ? InverseBlocks(blocks)
+          : InverseBlocks(
+                (diagonal.array() > 0)
+                    .select(diagonal, std::numeric_limits<double>::infinity()));
   int num_products = 0;
   space.largest_eigenvalue = LargestEigenvalue(
       space.multiply, space.inverse_blocks, num_products, rows_.ranks);

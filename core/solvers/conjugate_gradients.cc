@@ -109,7 +109,10 @@ class Iterations {
     direction_.resize(0, 0);
     std::vector<Eigen::Index> left(columns_.size());
     std::iota(left.begin(), left.end(), Eigen::Index{0});
-    PutIntoResult(left);
+    Put(left, x_, result_.solution);
+    if (!columns_.empty()) {
+      Put(left, residual_, result_.residual);
+    }
     return std::move(result_);
   }
 
@@ -196,17 +199,18 @@ class Iterations {
     return rz <= most * result_.smallest_eigenvalue;
   }
 
-  // Puts the columns at these places into the result.
-  void PutIntoResult(const std::vector<Eigen::Index>& places) {
+  // Puts the columns at these places into all columns.
+  void Put(const std::vector<Eigen::Index>& places, Eigen::MatrixXd& columns,
+           Eigen::MatrixXd& all) const {
     if (Eigen::Index(places.size()) == num_columns_) {
-      result_.solution = std::move(x_);
+      all = std::move(columns);
       return;
     }
-    if (result_.solution.cols() == 0) {
-      result_.solution.setZero(num_rows_, num_columns_);
+    if (all.cols() == 0) {
+      all.setZero(num_rows_, num_columns_);
     }
     for (const Eigen::Index k : places) {
-      result_.solution.col(columns_[k]) = x_.col(k);
+      all.col(columns_[k]) = columns.col(k);
     }
   }
 
@@ -221,7 +225,7 @@ class Iterations {
     if (done.empty()) {
       return;
     }
-    PutIntoResult(done);
+    Put(done, x_, result_.solution);
     for (Eigen::MatrixXd* const matrix : {&x_, &residual_, &direction_, &z}) {
       if (matrix->cols() > 0) {
         KeepColumns(kept, *matrix);

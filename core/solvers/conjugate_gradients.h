@@ -23,7 +23,10 @@ struct ConjugateGradientOptions {
 };
 
 struct ConjugateGradientResult {
-  Eigen::MatrixXd solution;    ///< As far as it was found: size x n.
+  Eigen::MatrixXd solution;  ///< As far as it was found: size x n.
+  /// b - A x where not all columns have converged, size x n; zero in those that
+  /// have.
+  Eigen::MatrixXd residual;
   bool has_converged = false;  ///< Whether all columns have converged.
   int iterations = 0;          ///< The sum over all columns.
   int products = 0;            ///< Products with A, of any columns each.

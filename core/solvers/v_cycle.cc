@@ -158,16 +158,8 @@ Eigen::MatrixXd VCycle(const std::vector<CycleSpace>& spaces,
   return CycleFrom(spaces, spaces.size(), solve_coarsest, force);
 }
 
-Eigen::MatrixXf InverseBlocks(Eigen::MatrixXd blocks,
-                              const std::vector<Eigen::Index>& held) {
+Eigen::MatrixXf InverseBlocks(const Eigen::MatrixXd& blocks) {
   const Eigen::Index size = blocks.rows();
-  for (const Eigen::Index row : held) {
-    const Eigen::Index i = row % size;
-    auto block = blocks.middleCols(row - i, size);
-    block.row(i).setZero();
-    block.col(i).setZero();
-    block(i, i) = 1;
-  }
   Eigen::MatrixXf inverses(blocks.rows(), blocks.cols());
   if (size == 3) {
     InvertEach<3>(blocks, inverses);
@@ -177,10 +169,20 @@ Eigen::MatrixXf InverseBlocks(Eigen::MatrixXd blocks,
     assert(size == 1);
     InvertEach<1>(blocks, inverses);
   }
-  for (const Eigen::Index row : held) {
-    inverses(row % size, row) = 0;
-  }
   return inverses;
+}
+
+void HoldInInverses(const std::vector<Eigen::Index>& held,
+                    Eigen::MatrixXf& inverse_blocks) {
+  const Eigen::Index size = inverse_blocks.rows();
+  for (const Eigen::Index row : held) {
+    const Eigen::Index i = row % size;
+    auto block = inverse_blocks.middleCols(row - i, size);
+    const Eigen::VectorXf column = block.col(i);
+    block -= column * column.transpose() / column(i);
+    block.row(i).setZero();
+    block.col(i).setZero();
+  }
 }
 
 double LargestEigenvalue(const ColumnOperator& multiply,

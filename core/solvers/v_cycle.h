@@ -12,7 +12,7 @@ namespace elastimate {
 /// Held rows are zero in all columns and all products.
 struct CycleSpace {
   ColumnOperator multiply;  ///< K x.
-  /// The inverses of the diagonal blocks of K, as InverseBlocks returns them.
+  /// The inverses of the diagonal blocks of K, zero where a row is held.
   Eigen::MatrixXf inverse_blocks;
   double largest_eigenvalue = 0;  ///< LargestEigenvalue, for these blocks.
   ColumnOperator restrict;        ///< From this space to the next coarser one.
@@ -29,13 +29,16 @@ struct CycleSpace {
                                      const ColumnOperator& solve_coarsest,
                                      const Eigen::MatrixXd& force);
 
-/// Inverts each of some blocks, which stand side by side, on its free
-/// components, and leaves zeros in the rows and columns of the `held` ones,
-/// which are numbered over all blocks.  The inverses stand side by side as the
-/// blocks do.  Single precision is enough for a preconditioner.  Precondition:
+/// Inverts each of some blocks, which stand side by side, as the inverses do.
+/// Single precision is enough for a preconditioner.  Precondition: symmetric
 /// blocks of 1, 2 or 3 rows.
-[[nodiscard]] Eigen::MatrixXf InverseBlocks(
-    Eigen::MatrixXd blocks, const std::vector<Eigen::Index>& held);
+[[nodiscard]] Eigen::MatrixXf InverseBlocks(const Eigen::MatrixXd& blocks);
+
+/// Makes each inverse that of its block on the free components, with zeros in
+/// the rows and columns of the `held` ones, which are numbered over all blocks.
+/// Precondition: positive definite blocks.
+void HoldInInverses(const std::vector<Eigen::Index>& held,
+                    Eigen::MatrixXf& inverse_blocks);
 
 /// Estimates the largest eigenvalue of D^-1 K for the diagonal blocks D; the
 /// estimate may be a tenth too small.  The result is NaN where K is seen not to

@@ -414,6 +414,9 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start,
     chain.Finest().Fit().minimum->of_other_model =
         linear_->Fit().minimum->variables;
   }
+  if (linear_) {
+    linear_->ForgetModel();
+  }
   if (chain.Finest().Fit().minimum) {
     // A divided mesh would hardly change the curvature.
     Describe(chain, curvature == MisfitCurvature::kConsidered

@@ -125,6 +125,12 @@ void SpaceFit::KeepMinimum() {
   }
 }
 
+void SpaceFit::ForgetModel() {
+  misfit_.ForgetPlaced();
+  misfit_.SetSolution({});
+  certified_.reset();
+}
+
 const StiffnessSolver* SpaceFit::SolverOfCoarsest() {
   if (certified_) {
     return &certified_->Solver();

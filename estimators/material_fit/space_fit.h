@@ -105,6 +105,8 @@ class SpaceFit {
   /// Gives back the memory that only another Minimize needs, which then takes
   /// longer.
   void KeepMinimum();
+  /// Gives back all that a minimum was found by, but for the solver.
+  void ForgetModel();
 
   /// The square sum of what is left of the displacements at the minimum.
   double SquareSum() const { return square_sum_; }

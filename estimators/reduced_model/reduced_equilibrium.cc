@@ -115,6 +115,7 @@ void ReducedEquilibrium::Append(Eigen::Index k, Eigen::MatrixXd vectors,
   } else {
     load_case.basis.conservativeResize(Eigen::NoChange, m);
     load_case.basis.rightCols(m - old) = vectors;
+    vectors.resize(0, 0);  // A column of a large mesh needs much memory.
   }
   Eigen::MatrixXd of_moduli(m, m * num_moduli);
   for (Eigen::Index i = 0; i < num_moduli; ++i) {
@@ -123,11 +124,13 @@ void ReducedEquilibrium::Append(Eigen::Index k, Eigen::MatrixXd vectors,
   }
   for (Eigen::Index j = old; j < m; ++j) {
     ++element_passes_;
-    const Eigen::MatrixXd products =
-        InnerProducts(load_case.basis, forces_.Columns(load_case.basis.col(j)));
+    const std::vector<Eigen::MatrixXd> forces =
+        forces_.Products(load_case.basis.col(j));
     for (Eigen::Index i = 0; i < num_moduli; ++i) {
-      of_moduli.col(m * i + j) = products.col(i);
-      of_moduli.row(j).segment(m * i, m) = products.col(i).transpose();
+      const Eigen::VectorXd products =
+          InnerProducts(load_case.basis, forces[i]);
+      of_moduli.col(m * i + j) = products;
+      of_moduli.row(j).segment(m * i, m) = products.transpose();
     }
   }
   load_case.of_moduli = of_moduli;
