@@ -4,8 +4,10 @@
 #include <ceres/problem.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 
 namespace elastimate {
@@ -14,13 +16,68 @@ namespace {
 // A variable without a bound may change by the logarithm of a million.
 constexpr double kLargestChange = 14;
 
+// What Gauss-Newton steps neglect of the curvature, S = sum_i r_i d2r_i/dx2, by
+// the secants of the steps [Dennis, Gay & Welsch, ACM Trans. Math. Softw. 7
+// (1981) 348].  Where a wrong model leaves large residuals, Gauss-Newton steps
+// overshoot the minimum, and come to it only after dozens of swings, or never.
+class NeglectedCurvature {
+ public:
+  void Update(const Eigen::VectorXd& x, const Eigen::VectorXd& residual,
+              const Eigen::MatrixXd& jacobian) {
+    const Eigen::VectorXd gradient = jacobian.transpose() * residual;
+    if (curvature_.size() == 0) {
+      curvature_ = Eigen::MatrixXd::Zero(x.size(), x.size());
+    } else if (x != x_) {
+      TakeSecant(x - x_, gradient - jacobian_.transpose() * residual,
+                 gradient - gradient_);
+    }
+    x_ = x;
+    gradient_ = gradient;
+    jacobian_ = jacobian;
+  }
+
+  // Returns L with L^T L = S, without directions in which S is negative, where
+  // Gauss-Newton steps are too short.
+  Eigen::MatrixXd Root() const {
+    const SymmetricEigenDecomposition modes = DecomposeSymmetric(curvature_);
+    return modes.values.cwiseMax(0).cwiseSqrt().asDiagonal() *
+           modes.vectors.transpose();
+  }
+
+ private:
+  // `change` is S times the step, as the Jacobians see it.
+  void TakeSecant(const Eigen::VectorXd& step, const Eigen::VectorXd& change,
+                  const Eigen::VectorXd& change_of_gradient) {
+    const double along = change_of_gradient.dot(step);
+    if (!(along > 0)) {
+      return;
+    }
+    // As residuals fall, S does, more quickly than secants tell.
+    const double known = std::abs(step.dot(curvature_ * step));
+    if (known > 0) {
+      curvature_ *= std::min(1.0, std::abs(step.dot(change)) / known);
+    }
+    const Eigen::VectorXd rest = change - curvature_ * step;
+    const Eigen::VectorXd y = change_of_gradient / along;
+    curvature_ += rest * y.transpose() + y * rest.transpose() -
+                  rest.dot(step) * y * y.transpose();
+  }
+
+  Eigen::VectorXd x_;
+  Eigen::VectorXd gradient_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::MatrixXd curvature_;
+};
+
 // All residuals, of one block for each variable, so that each may be held.
+// Residuals that are always zero follow, whose Jacobian adds the neglected
+// curvature to that of Gauss-Newton steps.
 class VariablesCost : public ceres::CostFunction {
  public:
   VariablesCost(const ResidualFunction& residual, Eigen::Index num_residuals,
                 Eigen::Index num_variables)
       : residual_(residual), num_variables_(num_variables) {
-    set_num_residuals(static_cast<int>(num_residuals));
+    set_num_residuals(static_cast<int>(num_residuals + num_variables));
     mutable_parameter_block_sizes()->assign(num_variables, 1);
   }
 
@@ -35,12 +92,20 @@ class VariablesCost : public ceres::CostFunction {
     if (!residual_(x, &r, jacobians == nullptr ? nullptr : &jacobian)) {
       return false;
     }
-    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
+    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) << r,
+        Eigen::VectorXd::Zero(num_variables_);
     last_ = x;
     cost_of_last_ = r.squaredNorm() / 2;
-    for (Eigen::Index i = 0; jacobians != nullptr && i < num_variables_; ++i) {
+    if (jacobians == nullptr) {
+      return true;
+    }
+    neglected_.Update(x, r, jacobian);
+    const Eigen::MatrixXd root = neglected_.Root();
+    for (Eigen::Index i = 0; i < num_variables_; ++i) {
       if (jacobians[i] != nullptr) {
-        Eigen::Map<Eigen::VectorXd>(jacobians[i], r.size()) = jacobian.col(i);
+        Eigen::Map<Eigen::VectorXd>(jacobians[i], num_residuals())
+            << jacobian.col(i),
+            root.col(i);
       }
     }
     return true;
@@ -53,6 +118,7 @@ class VariablesCost : public ceres::CostFunction {
  private:
   const ResidualFunction& residual_;
   Eigen::Index num_variables_;
+  mutable NeglectedCurvature neglected_;
   mutable Eigen::VectorXd last_;
   mutable double cost_of_last_ = std::numeric_limits<double>::infinity();
 };

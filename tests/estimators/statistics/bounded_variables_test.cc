@@ -64,6 +64,29 @@ TEST(MinimizeOverVariables, TakesTheStepThatEndsTheSearch) {
   }
 }
 
+// (x + 1, l x^2 + x - 1) has its minimum at 0 [Dennis & Schnabel, Numerical
+// Methods for Unconstrained Optimization].  There a Gauss-Newton step changes
+// x to l x, so that it would take 300 of them.
+TEST(MinimizeOverVariables, ConvergesQuicklyWhereLargeResidualsAreLeft) {
+  constexpr double kFactor = -0.95;
+  int num_jacobians = 0;
+  const auto residual_of = [&](const Eigen::VectorXd& x,
+                               Eigen::VectorXd* residual,
+                               Eigen::MatrixXd* jacobian) {
+    *residual = Eigen::Vector2d(x(0) + 1, kFactor * x(0) * x(0) + x(0) - 1);
+    if (jacobian != nullptr) {
+      ++num_jacobians;
+      *jacobian = Eigen::Vector2d(1, 2 * kFactor * x(0) + 1);
+    }
+    return true;
+  };
+  const BoundedMinimum minimum = MinimizeOverVariables(
+      residual_of, 2, {Bounds{}}, Eigen::VectorXd::Constant(1, 0.1), Options());
+  EXPECT_EQ(minimum.end, End::kDone);
+  EXPECT_NEAR(minimum.variables(0), 0, 1e-7);
+  EXPECT_LE(num_jacobians, 12);
+}
+
 TEST(MinimizeOverVariables, HasNoCostWithoutAValueAtTheStart) {
   const BoundedMinimum minimum = MinimizeOverVariables(
       Distance, 2, {Bounds{}, Bounds{}}, Eigen::Vector2d(20, 0), Options());
