@@ -243,6 +243,9 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
 
 std::optional<double> Equilibrium::GrowthAlong(
     const Eigen::VectorXd& direction) const {
+  // Directions of a law come from a few products of its moduli, each rounded by
+  // 2e-16.  Taking a direction as another one that is as close changes
+  // sensitivities by less than iterations leave of their error.
   constexpr double kRounding = 1e-14;
   const double growth = direction.dot(moduli_) / moduli_.squaredNorm();
   return !has_unknown_motion_ && (direction - growth * moduli_).norm() <=
