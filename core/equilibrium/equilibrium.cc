@@ -243,6 +243,10 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
 
 std::optional<double> Equilibrium::GrowthAlong(
     const Eigen::VectorXd& direction) const {
+  // Directions come from a few products of moduli, each rounded by 2e-16.  If a
+  // direction is as close to the moduli by chance, its sensitivities differ by
+  // less than the error that iterations leave (1e-8), as long as no modulus is
+  // a millionth of another.
   constexpr double kRounding = 1e-14;
   const double growth = direction.dot(moduli_) / moduli_.squaredNorm();
   return !has_unknown_motion_ && (direction - growth * moduli_).norm() <=

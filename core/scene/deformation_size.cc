@@ -24,7 +24,9 @@ constexpr int kLargestDegree = 4;
 // that noise is smoothed.
 constexpr Eigen::Index kValuesPerMonomial = 4;
 // An affine function amplifies noise least, so fewer values are enough. If it
-// needed as many, specimens with few points would seem to have no strain.
+// needed as many, specimens with few points would seem to have no strain.  With
+// two values for each coefficient, as many residuals as coefficients are left,
+// which tell the size of the noise.
 constexpr Eigen::Index kValuesPerAffineMonomial = 2;
 // Points on a surface make the polynomials dependent.  Polynomials that are
 // dependent to within this share, though not to within rounding, still amplify

@@ -53,6 +53,16 @@ bool ModulusEstimate::IsDetermined() const {
   return RelativeError() <= kLimits.largest_youngs_modulus_error;
 }
 
+ParameterEstimate ModulusEstimate::AsParameter() const {
+  ParameterEstimate parameter;
+  parameter.name = "shear_modulus";
+  parameter.symbol = "mu";
+  parameter.is_modulus = true;
+  parameter.value = value;
+  parameter.standard_error = standard_error;
+  return parameter;
+}
+
 std::string RegionsLabel(const std::vector<int>& regions) {
   constexpr std::size_t kMostNamed = 3;
   const std::size_t num_named =
@@ -159,6 +169,14 @@ Eigen::VectorXd Estimate::ParameterValues() const {
   return Eigen::VectorXd::NullaryExpr(
       Eigen::Index(parameters.size()),
       [this](Eigen::Index i) { return parameters[i].value; });
+}
+
+std::vector<ParameterEstimate> Estimate::ParametersAndShearModulus() const {
+  std::vector<ParameterEstimate> all = parameters;
+  if (shear_modulus) {
+    all.push_back(shear_modulus->AsParameter());
+  }
+  return all;
 }
 
 Eigen::MatrixXd Estimate::CovarianceWithGiven() const {

@@ -66,13 +66,17 @@ struct ParameterEstimate {
   bool IsDetermined() const;
 };
 
-/// A modulus that follows from the parameters of a law.
+/// The shear modulus, which follows from the parameters of a law.
 struct ModulusEstimate {
   double value;           ///< [pressure]
   double standard_error;  ///< [pressure]
-  double of_noise = 0;    ///< The part of the standard error that noise makes.
+  /// The part of the standard error that noise makes; not a number where it is
+  /// unknown.
+  double of_noise = std::numeric_limits<double>::quiet_NaN();
 
   double RelativeError() const { return standard_error / value; }
+  /// Returns it as a parameter, "shear_modulus", with its standard error.
+  ParameterEstimate AsParameter() const;
   /// Whether its standard error is small enough to be of use (Limits).
   bool IsDetermined() const;
 };
@@ -181,8 +185,8 @@ struct Outlier {
 
 /// How parameters change over the frames of a series: from the least load to
 /// the largest or, as loads are the same, from the first frame to the last.  In
-/// the order of the parameters, relative for moduli; not a number for those
-/// that are given.
+/// the order of Estimate::ParametersAndShearModulus, relative for moduli; not a
+/// number for those that are given or, beside a shear modulus, not joined.
 struct Trend {
   bool is_over_load = false;
   Eigen::VectorXd change;
@@ -348,6 +352,8 @@ struct Estimate {
   void Fail(const Finding& finding);
   /// The values of `parameters`.
   Eigen::VectorXd ParameterValues() const;
+  /// `parameters`, and after them `shear_modulus` where there is one.
+  std::vector<ParameterEstimate> ParametersAndShearModulus() const;
   /// `parameter_covariance`, in which what is given has no error.
   Eigen::MatrixXd CovarianceWithGiven() const;
   /// Square roots of the diagonal of `covariance`; empty when unknown.

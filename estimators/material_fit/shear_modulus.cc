@@ -107,7 +107,7 @@ ModulusEstimate ShearModulusOf(const std::vector<Estimate>& fits) {
   const Estimate& fit = LeastCertain(fits);
   const ParameterErrors& noise = fit.error_budget.noise;
   return {value, value * std::hypot((*most - *least) / 2, RelativeError(fit)),
-          value * (noise.size() == 0 ? 0 : noise(0))};
+          value * (noise.size() == 0 ? Estimate::kUnknown : noise(0))};
 }
 
 // Returns errors of E and nu that reach to the fit whose nu is furthest.

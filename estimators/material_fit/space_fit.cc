@@ -323,11 +323,13 @@ void SpaceFit::Minimize(Descent descent,
 }
 
 void SpaceFit::MinimizeAcrossRange(Descent descent) {
+  Stopwatch stopwatch;
   const Work before = WorkDone();
   const std::vector<Eigen::VectorXd> starts =
       StartsAcrossRange(scene_, *fit_.minimum, misfit_);
-  Work& work = fit_.estimate.work;
-  work = work + (WorkDone() - before);
+  Estimate& estimate = fit_.estimate;
+  estimate.work = estimate.work + (WorkDone() - before);
+  estimate.stages.front().seconds += stopwatch.Lap();
   MinimizeAlsoFrom(descent, {starts.begin(), starts.end()});
 }
 
@@ -338,8 +340,10 @@ void SpaceFit::MinimizeAlsoWithoutStart(Descent descent) {
 void SpaceFit::MinimizeAlsoFrom(
     Descent descent,
     const std::vector<std::optional<Eigen::VectorXd>>& starts) {
+  Stopwatch stopwatch;
   MaterialFit best = fit_;
   Work work = fit_.estimate.work;
+  const double seconds = fit_.estimate.stages.front().seconds;
   for (const std::optional<Eigen::VectorXd>& start : starts) {
     Minimize(descent, start);
     work = work + fit_.estimate.work;
@@ -351,6 +355,7 @@ void SpaceFit::MinimizeAlsoFrom(
   const Work before = WorkDone();
   EnterMinimum();
   fit_.estimate.work = work + (WorkDone() - before);
+  fit_.estimate.stages = {{"fit", seconds + stopwatch.Lap()}};
 }
 
 void SpaceFit::EnterMinimum() {

@@ -33,8 +33,10 @@ struct CaseInformation {
 /// Precondition: a scene that is valid with such displacements, and held.
 /// Throws std::runtime_error when the stiffness is singular to working
 /// precision, and std::invalid_argument where nothing that is observed moves.
-/// Cost: a factorisation for each set of supports, and a solve for each load
-/// case and free parameter.
+/// Cost: a factorisation for each set of supports, and for each load case a
+/// solve for its displacement and one for each free parameter.  Where `solver`
+/// is or takes multigrid, as for large meshes, iterations take the place of the
+/// factorisations.
 std::vector<CaseInformation> ExpectedInformation(
     const Scene& scene, std::size_t first_planned,
     const Eigen::VectorXd& parameters, double relative_noise,

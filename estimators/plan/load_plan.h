@@ -60,6 +60,13 @@ struct LoadPlan {
 /// say nothing of their noise.  A load that is free in size is scaled to the
 /// root mean square displacement of the load cases of the scene.
 ///
+/// If displacements are measured (Origin::kMeasured), the plan is computed with
+/// quadratic elements in place of linear ones, as fits are: linear elements
+/// bend too little.  Otherwise it is computed with the elements of the mesh.
+///
+/// Cost: that of ExpectedInformation with these elements, for the load cases of
+/// the scene and all candidates.
+///
 /// Throws as ExpectedInformation does, and std::invalid_argument for a scene
 /// that is invalid or not held, parameters that are not those of its
 /// materials, no free parameter, no candidates, or noise that is not positive.

@@ -604,47 +604,102 @@ bool IsOfShearModulus(const std::vector<FrameEstimate>& frames) {
          std::count_if(frames.begin(), frames.end(), is_usable);
 }
 
-// Returns a frame whose only parameter is the shear modulus. It is not usable
-// if this frame has none.
+// Returns the shear modulus of E and nu, and the part of its error that noise
+// makes: noise is taken to correlate E and nu as all of their errors do, as
+// only their variances are known by cause.
+std::optional<ModulusEstimate> ShearModulusOfElasticity(
+    const Estimate& estimate) {
+  const std::optional<double> error = estimate.ShearModulusStandardError();
+  if (!error) {
+    return std::nullopt;
+  }
+  ModulusEstimate modulus = {estimate.ShearModulus(), *error};
+  const ParameterErrors& noise = estimate.error_budget.noise;
+  if (noise.size() == 2) {
+    const Eigen::Array2d units(estimate.elasticity.youngs_modulus, 1);
+    const Eigen::Vector2d share =
+        noise.array() * units / estimate.covariance.diagonal().array().sqrt();
+    const Eigen::RowVector2d row =
+        ShearAndBulkJacobian(estimate.elasticity).row(0) * share.asDiagonal();
+    modulus.of_noise = std::sqrt(row * estimate.covariance * row.transpose());
+  }
+  return modulus;
+}
+
+// Returns a frame whose only parameter is the shear modulus: its own, or that
+// of its E and nu. It is not usable if this frame has none.
 FrameEstimate FrameOfShearModulus(const FrameEstimate& frame) {
   FrameEstimate of_it = {frame.load, {}, frame.likeness, frame.num_alike};
   const Estimate& estimate = frame.estimate;
-  if (!estimate.IsUsable() || !estimate.shear_modulus) {
+  const std::optional<ModulusEstimate> modulus =
+      estimate.shear_modulus ? estimate.shear_modulus
+                             : ShearModulusOfElasticity(estimate);
+  if (!estimate.IsUsable() || !modulus) {
     return of_it;
   }
-  const ModulusEstimate& modulus = *estimate.shear_modulus;
   of_it.estimate.Accept();
   of_it.estimate.element_order = estimate.element_order;
   of_it.estimate.findings = estimate.findings;
   of_it.estimate.noise_sd = estimate.noise_sd;
   of_it.estimate.noise_degrees_of_freedom = estimate.noise_degrees_of_freedom;
   of_it.estimate.deformation = estimate.deformation;
-  ParameterEstimate parameter;
-  parameter.name = "shear_modulus";
-  parameter.symbol = "mu";
-  parameter.is_modulus = true;
-  parameter.value = modulus.value;
-  of_it.estimate.parameters = {parameter};
+  of_it.estimate.parameters = {modulus->AsParameter()};
   of_it.estimate.parameter_covariance.setConstant(
-      1, 1, std::pow(modulus.standard_error, 2));
+      1, 1, std::pow(modulus->standard_error, 2));
   of_it.estimate.error_budget.noise =
-      Eigen::VectorXd::Constant(1, modulus.of_noise / modulus.value);
+      Eigen::VectorXd::Constant(1, modulus->of_noise / modulus->value);
   return of_it;
 }
 
-// Joins the shear moduli of frames that determine nothing else.  E and nu are
-// those of the frame that knows its shear modulus best.
+double RelativeErrorOfOnly(const Estimate& estimate) {
+  return std::sqrt(estimate.parameter_covariance(0, 0)) /
+         estimate.parameters[0].value;
+}
+
+// Adds the error of the loads to an estimate of E and nu that was made without
+// it.
+void AddErrorOfLoads(double relative, Estimate& estimate) {
+  estimate.parameter_covariance(0, 0) +=
+      std::pow(relative * estimate.parameters[0].value, 2);
+  ParameterErrors& noise = estimate.error_budget.noise;
+  if (noise.size() > 0) {
+    noise(0) = std::hypot(noise(0), relative);
+  }
+}
+
+// Returns the trend of the only parameter as that of the shear modulus, which
+// comes after `num_others` parameters that are not joined.
+Trend AfterOthers(const Trend& of_only, std::size_t num_others) {
+  const auto after_unknown = [num_others](const Eigen::VectorXd& value) {
+    Eigen::VectorXd values = Eigen::VectorXd::Constant(
+        Eigen::Index(num_others) + 1, Estimate::kUnknown);
+    values.tail(1) = value;
+    return values;
+  };
+  return {of_only.is_over_load, after_unknown(of_only.change),
+          after_unknown(of_only.standard_error),
+          after_unknown(of_only.p_value)};
+}
+
+// Joins the shear moduli of frames most of which determine nothing else.  E and
+// nu are those of the frame that knows its shear modulus best.
 Estimate JoinShearModuli(const std::vector<FrameEstimate>& frames,
                          const LoadError& load_error) {
   std::vector<FrameEstimate> moduli;
-  const Estimate* best = nullptr;
+  std::size_t best = 0;
+  bool is_noise_known = true;
   for (const FrameEstimate& frame : frames) {
     moduli.push_back(FrameOfShearModulus(frame));
-    const Estimate& estimate = frame.estimate;
-    if (moduli.back().estimate.IsUsable() &&
-        (best == nullptr || estimate.shear_modulus->RelativeError() <
-                                best->shear_modulus->RelativeError())) {
-      best = &estimate;
+    const Estimate& estimate = moduli.back().estimate;
+    if (!estimate.IsUsable()) {
+      continue;
+    }
+    is_noise_known =
+        is_noise_known && std::isfinite(estimate.error_budget.noise(0));
+    if (!moduli[best].estimate.IsUsable() ||
+        RelativeErrorOfOnly(estimate) <
+            RelativeErrorOfOnly(moduli[best].estimate)) {
+      best = moduli.size() - 1;
     }
   }
   Estimate joint = Join(moduli, load_error);
@@ -652,13 +707,21 @@ Estimate JoinShearModuli(const std::vector<FrameEstimate>& frames,
     return joint;
   }
   joint.shear_modulus = ModulusEstimate{
-      joint.parameters[0].value, std::sqrt(joint.parameter_covariance(0, 0)),
-      joint.parameters[0].value * joint.error_budget.noise(0)};
-  joint.parameters = best->parameters;
-  joint.parameter_covariance = best->parameter_covariance;
-  joint.error_budget = best->error_budget;
-  // Trends are of the parameters, which are not joined.
-  joint.series->trend.reset();
+      joint.parameters[0].value, std::sqrt(joint.parameter_covariance(0, 0))};
+  if (is_noise_known) {
+    joint.shear_modulus->of_noise =
+        joint.parameters[0].value * joint.error_budget.noise(0);
+  }
+  const Estimate& of_best = frames[best].estimate;
+  joint.parameters = of_best.parameters;
+  joint.parameter_covariance = of_best.parameter_covariance;
+  joint.error_budget = of_best.error_budget;
+  if (!load_error.is_in_frames) {
+    AddErrorOfLoads(load_error.relative, joint);
+  }
+  if (std::optional<Trend>& trend = joint.series->trend) {
+    trend = AfterOthers(*trend, joint.parameters.size());
+  }
   return joint;
 }
 

@@ -60,7 +60,9 @@ struct LoadError {
 ///
 /// If most of the usable frames determine the shear modulus alone
 /// (Estimate::shear_modulus), y is its logarithm, and E and nu are those of the
-/// frame with the least relative error of the shear modulus.
+/// frame with the least relative error of the shear modulus.  Frames that
+/// determine E and nu join with mu = E / (2 (1 + nu)), whose error follows from
+/// the covariance of E and nu.
 ///
 /// Estimate::series has the number of frames and how the parameters change
 /// with the load, or from the first frame to the last where loads are the same

@@ -33,7 +33,7 @@ struct PlanBasis {
   std::vector<double> errors_of_estimate = {};
 };
 
-/// Returns a plan as a JSON text, described in docs/report.md.  Numbers
+/// Returns a plan as a JSON text, described in docs/plan.md.  Numbers
 /// round-trip; what is undetermined is null.
 [[nodiscard]] std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
                                    const std::vector<CandidateLoad>& candidates,

@@ -363,14 +363,16 @@ Json SeriesJson(const Estimate& estimate) {
   Json changes = nullptr;
   if (series.trend) {
     changes = Json::array();
-    for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-      const auto place = Eigen::Index(i);
+    Eigen::Index place = 0;
+    for (const ParameterEstimate& parameter :
+         estimate.ParametersAndShearModulus()) {
       changes.push_back(
-          {{"name", estimate.parameters[i].name},
-           {"region", RegionsJson(estimate.parameters[i].regions)},
+          {{"name", parameter.name},
+           {"region", RegionsJson(parameter.regions)},
            {"change", OrNull(series.trend->change(place))},
            {"standard_error", OrNull(series.trend->standard_error(place))},
            {"p_value", OrNull(series.trend->p_value(place))}});
+      ++place;
     }
   }
   return {{"frames", series.num_frames},

@@ -446,7 +446,8 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   }
   AddDiagnostics(estimate, text);
   if (estimate.series && estimate.series->trend) {
-    AddTrend(estimate.parameters, *estimate.series->trend, text);
+    AddTrend(estimate.ParametersAndShearModulus(), *estimate.series->trend,
+             text);
   }
   AddLine("work",
           std::to_string(estimate.work.element_passes) +

@@ -1,6 +1,7 @@
 #include "elastimate/core/algebra/tall_columns.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "tests/core/random_values.h"
 
@@ -40,6 +41,32 @@ TEST(TallColumns, AreScaledAndAddedByColumns) {
   AddTo(sum, b, factors);
   EXPECT_TRUE(
       sum.isApprox(Eigen::MatrixXd((a + b) * factors.asDiagonal()) + b, 1e-14));
+}
+
+TEST(TallColumns, HaveTheSameBitsForAnyNumberOfThreads) {
+  // Sums of several blocks depend on the order in which the blocks are added.
+  const Eigen::MatrixXd a = RandomMatrix(3 * kManyRows, 2, 5);
+  const Eigen::MatrixXd b = RandomMatrix(3 * kManyRows, 2, 6);
+  const Eigen::RowVector2d factors(1.0 / 3, -0.7);
+  const auto changed = [&] {
+    Eigen::MatrixXd columns = a;
+    Scale(columns, factors);
+    AddTo(columns, b);
+    AddTo(columns, b, factors);
+    return columns;
+  };
+  const int num_threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const Eigen::RowVectorXd products = ColumnProducts(a, b);
+  const Eigen::RowVectorXd magnitudes = ColumnMagnitudes(a);
+  const Eigen::MatrixXd columns = changed();
+  for (const int num : {2, 5}) {
+    omp_set_num_threads(num);
+    EXPECT_EQ(ColumnProducts(a, b), products);
+    EXPECT_EQ(ColumnMagnitudes(a), magnitudes);
+    EXPECT_EQ(changed(), columns);
+  }
+  omp_set_num_threads(num_threads);
 }
 
 }  // namespace

@@ -329,6 +329,46 @@ TEST(RefinedStiffness, SparesSolutionsWhereAllModuliGrowAlike) {
   EXPECT_EQ(two.refined.WorkDone().solves, before);
 }
 
+// Returns the change of the displacement while the moduli of the two materials
+// grow at these relative rates, by differences of dense solutions.
+Eigen::MatrixXd TextbookChange(const Scene& scene, const Eigen::Vector4d& at,
+                               const Eigen::Vector2d& rates) {
+  constexpr double kStep = 1e-4;
+  const auto solution = [&](double step) {
+    return testing::SolveByTextbook(scene,
+                                    {{at(0) * (1 + step * rates(0)), at(1)},
+                                     {at(2) * (1 + step * rates(1)), at(3)}});
+  };
+  return (solution(kStep) - solution(-kStep)) / (2 * kStep);
+}
+
+TEST(RefinedStiffness, SparesSolutionsOnlyWhereTheModuliOfAllMaterialsGrow) {
+  Scene scene =
+      testing::TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 2);
+  testing::DisplaceSupports(scene);
+  const Spaces spaces(scene, 1);
+  Equilibrium refined(spaces.All(), SolverKind::kCholesky);
+  const MaterialParameters& chart = refined.Forces().Parameters();
+  const Eigen::Vector4d parameters(2, 0.1, 5, 0.4);
+  const Eigen::VectorXd moduli = chart.Moduli(parameters);
+  ASSERT_TRUE(refined.Solve(moduli));
+  ASSERT_GT(refined.SupportResponse().norm(), 0);
+  const int before = refined.WorkDone().solves;
+  // Moduli of isotropic materials are proportional to E.
+  ExpectSame(refined.Sensitivities(-0.5 * moduli),
+             TextbookChange(spaces.Finest(), parameters, {-0.5, -0.5}));
+  EXPECT_EQ(refined.WorkDone().solves, before);
+  const Eigen::VectorXd of_second =
+      chart.ModuliJacobian(parameters).col(2) * parameters(2);
+  ExpectSame(refined.Sensitivities(of_second),
+             TextbookChange(spaces.Finest(), parameters, {0, 1}));
+  EXPECT_EQ(refined.WorkDone().solves, before + 1);
+  // Both grow, but one of them faster.
+  ExpectSame(refined.Sensitivities(moduli + of_second),
+             TextbookChange(spaces.Finest(), parameters, {1, 2}));
+  EXPECT_EQ(refined.WorkDone().solves, before + 2);
+}
+
 TEST(RefinedStiffness, TakesMaterialsWithAnAxis) {
   Scene scene = Block(2);
   Material fibres;

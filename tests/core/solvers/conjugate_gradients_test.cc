@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
@@ -15,13 +16,16 @@ using testing::RandomMatrix;
 
 class ConjugateGradients : public ::testing::Test {
  protected:
+  // Returns a reflection, which is orthogonal.
+  static Eigen::MatrixXd EigenvectorsOf(Eigen::Index size) {
+    const Eigen::VectorXd v = RandomMatrix(size, 1, 5).col(0).normalized();
+    return Eigen::MatrixXd::Identity(size, size) - 2 * v * v.transpose();
+  }
+
   // Returns a symmetric matrix with these eigenvalues.
   static Eigen::MatrixXd WithEigenvalues(const Eigen::VectorXd& values) {
-    const Eigen::VectorXd v =
-        RandomMatrix(values.size(), 1, 5).col(0).normalized();
-    const Eigen::MatrixXd reflection =
-        Eigen::MatrixXd::Identity(v.size(), v.size()) - 2 * v * v.transpose();
-    return reflection * values.asDiagonal() * reflection;
+    const Eigen::MatrixXd vectors = EigenvectorsOf(values.size());
+    return vectors * values.asDiagonal() * vectors.transpose();
   }
 
   ConjugateGradientResult Solve(const Eigen::MatrixXd& b,
@@ -85,6 +89,42 @@ TEST_F(ConjugateGradients, TreatColumnsAsIfEachWereAlone) {
   }
   // Each may be let go later by what the others tell of the eigenvalues.
   EXPECT_NEAR(all.iterations, iterations, 3);
+}
+
+// A column in the space of n eigenvectors is done after n iterations.
+TEST_F(ConjugateGradients, LetColumnsGoAtDifferentSteps) {
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(40, 0.05, 1.0);
+  const Eigen::MatrixXd vectors = EigenvectorsOf(40);
+  const std::vector<int> num_vectors = {40, 1, 0, 7, 3};
+  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(40, 5);
+  Eigen::MatrixXd expected = b;
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    for (int i = 0; i < num_vectors[k]; ++i) {
+      // Some columns are far larger than others.
+      const double factor = std::pow(1e3, double(k)) * (1 + i % 3);
+      const int place = (11 * i + int(k)) % 40;
+      b.col(k) += factor * vectors.col(place);
+      expected.col(k) += factor / values(place) * vectors.col(place);
+    }
+  }
+  const ConjugateGradientResult all = Solve(b);
+  ASSERT_TRUE(all.has_converged);
+  EXPECT_EQ(all.columns, 4);
+  EXPECT_TRUE(all.solution.col(2).isZero(0));
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    const ConjugateGradientResult alone = Solve(b.col(k));
+    ASSERT_TRUE(alone.has_converged);
+    if (k != 0) {
+      EXPECT_EQ(alone.iterations, num_vectors[k]);
+    }
+    for (const Eigen::VectorXd& x : {Eigen::VectorXd(all.solution.col(k)),
+                                     Eigen::VectorXd(alone.solution.col(0))}) {
+      const Eigen::VectorXd error = x - expected.col(k);
+      EXPECT_LE(std::sqrt(error.dot(a_ * error)),
+                options_.tolerance * std::sqrt(expected.col(k).dot(b.col(k))))
+          << "column " << k;
+    }
+  }
 }
 
 TEST_F(ConjugateGradients, TakeTheBestMultipleOfAGuess) {

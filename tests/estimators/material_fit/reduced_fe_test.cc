@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <random>
 
+#include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/solvers/multigrid.h"
 #include "elastimate/estimators/material_fit/iterative_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -97,6 +99,35 @@ TEST(ReducedFe, EstimatesTheSameByMultigrid) {
         EXPECT_EQ(expected.work.iterations, 0);
       }
     }
+  }
+}
+
+// Quadratic elements are solved for by iterations over the linear elements of
+// their vertices, where a fit has no certificate and descends from values
+// across the range of nu.
+TEST(ReducedFe, EstimatesTheSameOverTheVerticesOfQuadraticElements) {
+  if (!HasMultigrid()) {
+    GTEST_SKIP() << "built without PETSc";
+  }
+  EstimatorOptions direct;
+  direct.solver = SolverKind::kCholesky;
+  EstimatorOptions over_vertices;
+  over_vertices.solver = SolverKind::kMultigrid;
+  for (const double nu : {-0.5, 0.3, 0.45}) {
+    SCOPED_TRACE(nu);
+    Scene scene = FinerScene(SmallScene("cuboid"));
+    ASSERT_EQ(scene.mesh.kind, ElementKind::kTet10);
+    scene.origin = Origin::kComputed;
+    Measure({5e4, nu}, scene);
+    AddNoise(1e-2, 1, scene);
+    const Estimate expected = ReducedFe().Run(scene, direct);
+    const Estimate estimate = ReducedFe().Run(scene, over_vertices);
+    EXPECT_EQ(estimate.element_order, 2);
+    ExpectSame(estimate, expected, 0.1);
+    EXPECT_EQ(estimate.work.factorizations, 0);
+    EXPECT_GE(estimate.work.multigrid_set_ups, 1);
+    EXPECT_GE(expected.work.factorizations, 1);
+    EXPECT_EQ(expected.work.iterations, 0);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/estimators/interface/stopwatch.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
 
@@ -89,6 +90,22 @@ TEST_F(SupportEndsTest, AreToBeFittedWhereSystemsAreSolvedByFactors) {
   ASSERT_TRUE(free.Fit().minimum);
   Work work;
   EXPECT_FALSE(free.ChangeByHolding(free.OwnScene().supports.in_doubt, work));
+}
+
+// Nested spaces have no certificate, so a fit descends from values of nu across
+// its range as well.
+TEST_F(SupportEndsTest, StageOfTheFitHasTheTimeOfAllDescents) {
+  MeasureSpecimen(false);
+  SpaceFit fit(Quadratic(false), options_, {&linear_});
+  Stopwatch stopwatch;
+  fit.Minimize(Descent::kReduced, {});
+  const double seconds = stopwatch.Lap();
+  ASSERT_TRUE(fit.Fit().minimum);
+  const std::vector<StageTime>& stages = fit.Fit().estimate.stages;
+  ASSERT_EQ(stages.size(), 1);
+  EXPECT_EQ(stages[0].stage, "fit");
+  EXPECT_LE(stages[0].seconds, seconds);
+  EXPECT_GE(stages[0].seconds, 0.9 * seconds);
 }
 
 TEST_F(SupportEndsTest, MinimumThatIsKeptIsEvaluatedAndFoundAgain) {

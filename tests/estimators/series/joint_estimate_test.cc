@@ -232,6 +232,92 @@ TEST(JointEstimate, JoinsShearModuliThatAreAllThatIsDetermined) {
   EXPECT_EQ(of_both.series->num_used, 60);
 }
 
+// Sixty frames determine mu alone, and forty determine E = 100 and nu = 0.25,
+// so that mu = 40 as well.  Its relative error, by d ln mu = d ln E - d nu / (1
+// + nu), is that of the others.  Half of their variance is common to all
+// frames.
+TEST(JointEstimate, JoinsShearModuliOfFramesThatDetermineAll) {
+  std::vector<FrameEstimate> frames;
+  for (int i = 0; i < 60; ++i) {
+    const double modulus = 40 * std::exp(i % 2 == 0 ? 0.02 : -0.02);
+    frames.push_back(FrameOf(100, 0.2, {0.5, 0.4}, {0.1, 0.1}));
+    frames.back().estimate.shear_modulus =
+        ModulusEstimate{modulus, 0.02 * modulus, 0.02 * modulus};
+  }
+  const Eigen::Vector2d errors(0.012, 0.02);
+  frames.resize(100, FrameOf(100, 0.25, errors, errors * std::sqrt(0.5)));
+  const Estimate joint = Join(frames);
+  ASSERT_EQ(joint.status, Status::kOk) << joint.message;
+  EXPECT_EQ(joint.series->num_used, 100);
+  EXPECT_NEAR(joint.ShearModulus(), 40, 1e-9);
+  const double of_noise = 0.02 * std::sqrt(60 + 40 * 0.5) / 100;
+  const double common = 0.02 * std::sqrt(0.5) * 40 / 100;
+  EXPECT_NEAR(joint.shear_modulus->of_noise / 40, of_noise, 1e-9);
+  EXPECT_NEAR(*joint.ShearModulusStandardError() / 40,
+              std::hypot(of_noise, common), 1e-9);
+}
+
+// Returns frames that determine mu alone, which falls by 14 % while the load
+// grows.  Noise makes all of its error.
+std::vector<FrameEstimate> FramesOfShearModulus() {
+  std::vector<FrameEstimate> frames;
+  for (int i = 1; i <= 8; ++i) {
+    const double modulus = 40 * std::exp(-0.02 * i);
+    frames.push_back(FrameOf(100, 0.2, {0.5, 0.4}, {0.1, 0.1}));
+    frames.back().load = 10 * i;
+    frames.back().estimate.shear_modulus =
+        ModulusEstimate{modulus, 0.01 * modulus, 0.01 * modulus};
+  }
+  return frames;
+}
+
+TEST(JointEstimate, TellsHowTheShearModulusChanges) {
+  const Estimate joint = Join(FramesOfShearModulus());
+  ASSERT_TRUE(joint.series->trend.has_value());
+  const Trend& trend = *joint.series->trend;
+  ASSERT_EQ(trend.change.size(), 3);
+  EXPECT_EQ(joint.ParametersAndShearModulus()[2].name, "shear_modulus");
+  EXPECT_NEAR(trend.change(2), -0.14, 1e-9);
+  // The squares of the distances of the loads 10 to 80 from 45 have the sum
+  // 4200.
+  EXPECT_NEAR(trend.standard_error(2), 70 * 0.01 / std::sqrt(4200), 1e-9);
+  EXPECT_LT(trend.p_value(2), 1e-3);
+  // E and nu are those of one frame.
+  EXPECT_TRUE(std::isnan(trend.change(0)));
+  EXPECT_TRUE(std::isnan(trend.change(1)));
+  EXPECT_TRUE(joint.Has(FindingCode::kTrendOverFrames));
+  for (const Finding& finding : joint.findings) {
+    if (finding.code == FindingCode::kTrendOverFrames) {
+      EXPECT_EQ(finding.text.rfind("mu changes by -14 % +- 1.1 %", 0), 0)
+          << finding.text;
+    }
+  }
+}
+
+TEST(JointEstimate, CountsTheErrorOfLoadsInEBesideAShearModulus) {
+  const Estimate joint = Join(FramesOfShearModulus(), {0.1, false});
+  EXPECT_NEAR(*joint.YoungsModulusStandardError() / 100, std::hypot(0.5, 0.1),
+              1e-9);
+  EXPECT_NEAR(joint.error_budget.noise(0), std::hypot(0.1, 0.1), 1e-9);
+  EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.4, 1e-9);
+  // Frames that have the error of the loads already need it no more.
+  const Estimate with_it = Join(FramesOfShearModulus(), {0.005, true});
+  EXPECT_NEAR(*with_it.YoungsModulusStandardError() / 100, 0.5, 1e-9);
+}
+
+// An error that may be common to all frames does not average out.
+TEST(JointEstimate, DoesNotKnowTheNoiseOfAShearModulusThatNoFrameKnows) {
+  std::vector<FrameEstimate> frames = FramesOfShearModulus();
+  EXPECT_TRUE(std::isfinite(Join(frames).shear_modulus->of_noise));
+  for (FrameEstimate& frame : frames) {
+    frame.estimate.shear_modulus = ModulusEstimate{40, 0.8};
+  }
+  const Estimate joint = Join(frames);
+  ASSERT_TRUE(joint.shear_modulus.has_value());
+  EXPECT_NEAR(joint.shear_modulus->standard_error, 0.8, 1e-9);
+  EXPECT_TRUE(std::isnan(joint.shear_modulus->of_noise));
+}
+
 // A shear modulus that is known better does not take the place of a modulus
 // that is determined itself.
 TEST(JointEstimate, AveragesAModulusBesideAShearModulus) {
