@@ -28,8 +28,11 @@ class NeglectedCurvature {
     if (curvature_.size() == 0) {
       curvature_ = Eigen::MatrixXd::Zero(x.size(), x.size());
     } else if (x != x_) {
-      TakeSecant(x - x_, gradient - jacobian_.transpose() * residual,
-                 gradient - gradient_);
+      const Eigen::VectorXd step = x - x_;
+      const Eigen::VectorXd change =
+          gradient - jacobian_.transpose() * residual;
+      TakeSecant(step, change, gradient - gradient_);
+      is_large_ = step.dot(change) > kLarge * (jacobian * step).squaredNorm();
     }
     x_ = x;
     gradient_ = gradient;
@@ -37,14 +40,22 @@ class NeglectedCurvature {
   }
 
   // Returns L with L^T L = S, without directions in which S is negative, where
-  // Gauss-Newton steps are too short.
+  // Gauss-Newton steps are too short.  L is zero where S is small, because
+  // Gauss-Newton steps converge quickly there, and secants are not accurate.
   Eigen::MatrixXd Root() const {
+    if (!is_large_) {
+      return Eigen::MatrixXd::Zero(curvature_.rows(), curvature_.cols());
+    }
     const SymmetricEigenDecomposition modes = DecomposeSymmetric(curvature_);
     return modes.values.cwiseMax(0).cwiseSqrt().asDiagonal() *
            modes.vectors.transpose();
   }
 
  private:
+  // With S this part of J^T J, each Gauss-Newton step leaves this part of the
+  // distance to the minimum.
+  static constexpr double kLarge = 0.25;
+
   // `change` is S times the step, as the Jacobians see it.
   void TakeSecant(const Eigen::VectorXd& step, const Eigen::VectorXd& change,
                   const Eigen::VectorXd& change_of_gradient) {
@@ -67,6 +78,7 @@ class NeglectedCurvature {
   Eigen::VectorXd gradient_;
   Eigen::MatrixXd jacobian_;
   Eigen::MatrixXd curvature_;
+  bool is_large_ = false;
 };
 
 // All residuals, of one block for each variable, so that each may be held.
